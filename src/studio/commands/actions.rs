@@ -135,6 +135,7 @@ impl Action {
             Share(ShareCommand::Cancel) => now.is_sharing,
             Share(ShareCommand::Ask(_)) => !now.is_sharing,
             Run(RunCommand::ShowHash) => now.is_finished,
+            Stage(StageCommand::ToggleFollowEvolution) => !now.is_finished,
             Stage(StageCommand::KeepChange) => now.is_what_if,
             Stage(StageCommand::TryAnother) => now.can_try_another,
             Stage(StageCommand::Leave) => now.can_leave,

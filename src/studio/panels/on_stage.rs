@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use bevy_egui::egui;
 
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::commands::{Command, PlayerCommand, StageCommand, ViewCommand};
+use crate::studio::commands::{Command, PlayerCommand, ViewCommand};
 use crate::studio::scene::camera::StageCamera;
 use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
@@ -77,9 +77,6 @@ impl OnStage<'_, '_> {
                 Some(self.overlays.shows(*overlay))
             }
             Command::View(ViewCommand::ToggleTheme) => Some(theme == Theme::Dark),
-            Command::Stage(StageCommand::ToggleFollowEvolution) => {
-                Some(self.following.follows_evolution())
-            }
             _ => None,
         }
     }

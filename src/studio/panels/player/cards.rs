@@ -12,6 +12,7 @@ use super::stage_card::{CardStates, CardTable, StageCard};
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, StageCommand, WindowCommand};
+use crate::studio::panels::champions::FOLLOW_COMMAND;
 use crate::studio::panels::help::menu::IsOn;
 use crate::studio::panels::on_stage::OnStage;
 use crate::studio::scene::way_back::{Excursion, WayBack};
@@ -108,7 +109,7 @@ pub(crate) fn around_stage(
     let generation = |number: u32| {
         card("generation", &format!("Generation {number}"), String::new(), egui::Align2::LEFT_TOP)
     };
-    let (mode, following) = (&*on_stage.mode, &on_stage.following);
+    let (mode, following) = (&*on_stage.mode, &*on_stage.following);
     let ranking = |ui: &mut egui::Ui| {
         let (focus, time_s) = (focused.number, on_stage.playback.time_s());
         let leaves = (is_narrow, on_stage.way_back.can_leave());
@@ -119,6 +120,7 @@ pub(crate) fn around_stage(
         StageMode::WhatIf { .. } => table.card(&board("What if"), None, ranking),
         StageMode::Generation { number, .. } => table.card(&generation(*number), None, |ui| {
             if let Some(best) = lanes.first() {
+                let following = (following, (situation.is_on)(&FOLLOW_COMMAND));
                 generation_card(ui, mode, following, best, lanes.len(), commands);
             }
         }),

@@ -3,19 +3,20 @@
 use bevy_egui::egui;
 
 use crate::studio::commands::{Command, PlanCommand, PlayerCommand, StageCommand};
-use crate::studio::panels::champions::{FOLLOW, FOLLOW_COMMAND};
+use crate::studio::panels::champions::follow_box;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::following::Following;
-use crate::studio::ui::buttons::{CommandButton, command_box};
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{explain, title_text};
 
 /// Draws the card of the generation on the stage. `best` is the lane of the best snake, `shown` the number of lanes.
+/// `follows` is the state of the check box for following evolution, if it is offered.
 pub(crate) fn generation_card(
     ui: &mut egui::Ui,
     mode: &StageMode,
-    following: &Following,
+    (following, follows): (&Following, Option<bool>),
     best: &Lane,
     shown: usize,
     commands: &mut Vec<Command>,
@@ -27,7 +28,7 @@ pub(crate) fn generation_card(
         explain(ui, &format!("Story, part {part} of {parts}"));
     }
     ui.horizontal(|ui| {
-        command_box(ui, following.follows_evolution(), FOLLOW, FOLLOW_COMMAND, commands);
+        follow_box(ui, follows, commands);
         let hint = "Show only the best snake of this generation";
         let single = Command::Stage(StageCommand::Single);
         CommandButton::new("Only the best", hint, single).show(ui, commands);
