@@ -213,6 +213,7 @@ fn changes_own_run(command: &Command) -> bool {
         Command::Run(
             RunCommand::Start
                 | RunCommand::SingleGeneration
+                | RunCommand::Extend
                 | RunCommand::New
                 | RunCommand::Reset
                 | RunCommand::Continue(_)

@@ -118,8 +118,9 @@ impl Action {
                 return now.digit.map(shown);
             }
             Run(RunCommand::Start) if now.is_finished => {
-                let text = "This run is finished. \"New run\" begins another one.".to_owned();
-                return Some(Command::Notify(text));
+                let text =
+                    "This run is finished. The Watch panel continues it, or begins another one.";
+                return Some(Command::Notify(text.to_owned()));
             }
             Stage(StageCommand::Leave) if now.is_covered => {
                 return Some(Window(WindowCommand::CloseModal));
@@ -134,7 +135,7 @@ impl Action {
             Command::Redo => now.can_redo,
             Share(ShareCommand::Cancel) => now.is_sharing,
             Share(ShareCommand::Ask(_)) => !now.is_sharing,
-            Run(RunCommand::ShowHash) => now.is_finished,
+            Run(RunCommand::ShowHash | RunCommand::Extend) => now.is_finished,
             Stage(StageCommand::ToggleFollowEvolution) => !now.is_finished,
             Stage(StageCommand::KeepChange) => now.is_what_if,
             Stage(StageCommand::TryAnother) => now.can_try_another,
@@ -248,6 +249,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
         Menu::Run => vec![
             ("Start or pause evolution", &["E"], Run(RunCommand::Start)),
             ("Evolve one generation", &["G"], Run(RunCommand::SingleGeneration)),
+            ("Continue the finished run", &[], Run(RunCommand::Extend)),
             ("Repeat the run from its start", &[], Run(RunCommand::Reset)),
             ("Show the run hash", &[], Run(RunCommand::ShowHash)),
             (

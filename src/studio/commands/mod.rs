@@ -86,6 +86,8 @@ pub(super) enum RunCommand {
     Pause,
     /// Evolve to the end of the current generation.
     SingleGeneration,
+    /// Evolve the finished run further, by as many generations as it began with.
+    Extend,
     /// Start another run: with the settings of the next run or, if they are unchanged, with the next seed. The current
     /// run stays saved.
     New,

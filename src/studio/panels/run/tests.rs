@@ -34,6 +34,21 @@ fn each_button_sends_its_command() {
 }
 
 #[test]
+fn a_finished_run_offers_more_generations_and_a_new_run() {
+    let mut run = run();
+    run.run_hash = Some(1);
+    for (label, command) in
+        [("Continue for 6 generations", RunCommand::Extend), ("New run", RunCommand::New)]
+    {
+        let sent = sent(&run, |harness| {
+            assert!(!shows(harness, "One generation"), "there is none left");
+            harness.get_by_label(label).click();
+        });
+        assert_eq!(sent, [Command::Run(command)]);
+    }
+}
+
+#[test]
 fn the_first_button_pauses_a_running_run() {
     let mut run = run();
     run.start().expect("a thread");

@@ -26,6 +26,7 @@ impl CurrentRun {
             RunCommand::Start => self.start(),
             RunCommand::Pause => self.pause(),
             RunCommand::SingleGeneration => self.single_generation(),
+            RunCommand::Extend => self.extend(),
             RunCommand::New => self.begin_next(),
             RunCommand::Reset => {
                 let (plan, finished) = (self.source.plan.clone(), self.reports.len());
