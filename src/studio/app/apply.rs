@@ -8,6 +8,7 @@ use bevy::prelude::*;
 
 use super::quit::QuitRequest;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
+use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::share::ShareCommand;
@@ -116,6 +117,9 @@ impl StudioParams<'_, '_> {
                 if let Some(news) = workspace.apply(command) {
                     notices.update("panel size", news.to_owned());
                 }
+            }
+            Command::Library(LibraryCommand::SaveSnake) => {
+                library.save(&stage.selected().ok_or("There is no snake on the stage.")?)?;
             }
             Command::Library(command) => {
                 stage.present_others(library.apply(command, history, notices)?, notices);

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use super::Command::{self, Exam, File, Player, Run, Share, Stage, View, Window};
 use super::camera_mode::CameraMode;
 use super::files::{FileCommand, FileQuestion};
+use super::library::LibraryCommand;
 use super::modal::Modal;
 use super::overlay::Overlay;
 use super::panel::PanelKind;
@@ -203,6 +204,9 @@ pub(crate) fn actions() -> &'static [Action] {
                 Window(WindowCommand::Enlarge) => {
                     "A quarter larger; after the largest, the usual size"
                 }
+                Command::Library(LibraryCommand::SaveSnake) => {
+                    "The selected snake on the stage, into the library"
+                }
                 _ => "",
             };
             Action { menu, name, keys, hint, command }
@@ -228,6 +232,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
         Menu::File => vec![
             ("New run", &["Ctrl N"], Run(RunCommand::New)),
             ("Open…", &["Ctrl O"], File(FileCommand::Ask(FileQuestion::Open))),
+            ("Save snake", &["Ctrl S"], Command::Library(LibraryCommand::SaveSnake)),
             ("Import…", &["Ctrl I"], File(FileCommand::Ask(FileQuestion::Import))),
             ("Export…", &["Ctrl E"], File(FileCommand::AskExport)),
             ("Show saves folder", &[], File(FileCommand::ShowSaves)),

@@ -123,25 +123,22 @@ mod tests {
             let plan = RunPlan::new(DEFAULT_PRESET, 1, preset.settings);
             RunSource::in_saves(saves, plan, ExistingRun::Keep)
         };
-        let alike = |saves: &SavesFolder| small_run(saves, 2, 10_000);
-        let alike_short = |saves: &SavesFolder| small_run(saves, 2, 1);
-        let (paused, finished) = (RunStatus::Paused, RunStatus::Finished);
-        let kinds: [(u32, fn(&SavesFolder) -> RunSource, RunStatus, RunCommand); 4] = [
-            (10_000, alike, paused, RunCommand::Start),
-            (10_000, default, paused, RunCommand::Start),
-            (1, alike_short, finished, RunCommand::Extend),
-            (1, default, finished, RunCommand::Extend),
-        ];
-        for (generations, own, status, go_on) in kinds {
+        for (generations, status, go_on) in [
+            (10_000, RunStatus::Paused, RunCommand::Start),
+            (1, RunStatus::Finished, RunCommand::Extend),
+        ] {
+            let alike = |saves: &SavesFolder| small_run(saves, 2, generations);
             let is_open = |world: &World| {
                 let run = world.resource::<CurrentRun>();
                 (run.reports().len(), run.status()) == (1, status)
             };
-            for (command, seed) in [(go_on, 1), (RunCommand::New, 2)] {
+            for (is_default, command, seed) in [(false, go_on, 1), (true, RunCommand::New, 2)] {
+                let own =
+                    |saves: &SavesFolder| if is_default { default(saves) } else { alike(saves) };
                 let (_folder, mut app) = started(generations, own, is_open);
                 let said = app.world().resource::<Notices>().last().unwrap_or_default();
                 let is_told = said.starts_with("test 1, ") && said.contains(" is finished: ");
-                assert_eq!(is_told, status == finished, "{said}");
+                assert_eq!(is_told, status == RunStatus::Finished, "{said}");
                 let mut run = app.world_mut().resource_mut::<CurrentRun>();
                 let now = (run.plan_now.seed, run.number(), run.reports().len());
                 assert_eq!((now, run.status()), ((1, 0, 1), status));

@@ -4,7 +4,6 @@ mod excursions;
 
 use super::*;
 use crate::studio::commands::StageCommand;
-use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::scene::camera::rig::CameraRig;
