@@ -81,7 +81,7 @@ impl SortOrder {
             }
         }
         let turned = |order: Ordering| if self.is_descending { order.reverse() } else { order };
-        let by_name = || a.sorted_as().cmp(b.sorted_as());
+        let by_name = || a.sorted_as.cmp(&b.sorted_as);
         let by_key = match self.key {
             SortKey::Name => turned(by_name()),
             SortKey::Fitness => known(a.fitness(), b.fitness(), |a, b| turned(a.total_cmp(b))),
@@ -89,7 +89,7 @@ impl SortOrder {
             SortKey::Generation => known(a.generation(), b.generation(), |a, b| turned(a.cmp(b))),
             SortKey::Date => {
                 let date =
-                    |item: &LibraryItem| Some(item.entry().modified).filter(|at| !at.is_zero());
+                    |item: &LibraryItem| Some(item.entry.modified).filter(|at| !at.is_zero());
                 known(date(a), date(b), |a, b| turned(a.cmp(b)))
             }
         };
@@ -122,22 +122,22 @@ impl SortedItems {
     /// seconds.
     pub fn update(&mut self, library: &Library, search: &str, sort: SortOrder, now_s: f64) -> bool {
         let input_now = SortInput {
-            listings: library.listings(),
-            sortings: library.sortings(),
+            listings: library.listings,
+            sortings: library.sortings,
             search: search.to_lowercase(),
             sort,
         };
         let is_current = self.input.as_ref().is_some_and(|input| {
             let only_read_on =
                 SortInput { sortings: input_now.sortings, ..input.clone() } == input_now;
-            let is_young = library.unread() > 0 && now_s - self.sorted_at_s < MIN_SORT_INTERVAL_S;
+            let is_young = library.unread > 0 && now_s - self.sorted_at_s < MIN_SORT_INTERVAL_S;
             *input == input_now || (only_read_on && is_young)
         });
         if is_current {
             return false;
         }
         let words: Vec<&str> = input_now.search.split_whitespace().collect();
-        let items = library.items();
+        let items = &library.items;
         // If only a few entries have changed, the existing rows are nearly sorted, and sorting them takes linear time.
         let are_same = self.input.as_ref().is_some_and(|of| of.listings == input_now.listings);
         let mut rows: Vec<usize> = if are_same && self.rows.len() == items.len() {
@@ -174,7 +174,7 @@ mod tests {
     fn names(library: &Library, search: &str, sort: SortOrder) -> Vec<String> {
         let mut order = SortedItems::default();
         order.update(library, search, sort, 0.0);
-        order.rows().iter().map(|row| library.items()[*row].name().to_owned()).collect()
+        order.rows().iter().map(|row| library.items[*row].name().to_owned()).collect()
     }
 
     #[test]

@@ -189,7 +189,7 @@ mod tests {
         for (staged, trial) in [(&found, &champion.trial), (&changed, &trial)] {
             tried.library.save(staged).expect("begun");
             tried.wait();
-            let place = tried.library.newest().1.expect("pointed out").clone();
+            let place = tried.library.newest.1.clone().expect("pointed out");
             let saved = load_champion(place.path().expect("a file")).expect("readable");
             assert_eq!((&saved.champion.trial, saved.recording.is_some()), (trial, true));
             assert_eq!(saved.champion.genome, champion.genome);

@@ -10,7 +10,8 @@ use snakes_lab::run::names::{date, difference, run_name, with_title};
 /// An entry of the library with its contents, once they are read.
 #[derive(Debug)]
 pub struct LibraryItem {
-    entry: LibraryEntry,
+    /// Place, size and modification time of the entry.
+    pub entry: LibraryEntry,
     /// Entry after the file has changed, until the file is read again.
     awaited: Option<LibraryEntry>,
     name: String,
@@ -19,7 +20,7 @@ pub struct LibraryItem {
     /// Contents of the entry or the error of reading it; `None` until it is read.
     read: Option<Result<EntryDetails, EntryProblem>>,
     /// Name of the entry in lower case, which is its sort key.
-    sorted_as: String,
+    pub sorted_as: String,
     /// Words of the entry in lower case, which the search compares.
     words: String,
 }
@@ -110,11 +111,6 @@ impl LibraryItem {
         Some((&mut self.name, difference))
     }
 
-    /// Returns place, size and modification time of the entry.
-    pub fn entry(&self) -> &LibraryEntry {
-        &self.entry
-    }
-
     /// Returns the place of the entry.
     pub fn place(&self) -> &SavePlace {
         &self.entry.place
@@ -123,11 +119,6 @@ impl LibraryItem {
     /// Returns the user's name for the entry, or else a readable one of a run, or else the name of the file or folder.
     pub fn name(&self) -> &str {
         &self.name
-    }
-
-    /// Returns the name in lower case, which is the sort key.
-    pub fn sorted_as(&self) -> &str {
-        &self.sorted_as
     }
 
     /// Returns whether the words of the entry contain all of these lower-case words.
@@ -296,7 +287,7 @@ mod tests {
         item.learn(Err(EntryProblem::damaged("cut off")));
         item.follow(entry("Icy One", "slips at step 3"));
         assert!(item.learn(Err(EntryProblem::damaged("cut off"))), "it is sorted again");
-        assert_eq!((item.name(), item.sorted_as()), ("Icy One", "icy one"));
+        assert_eq!((item.name(), item.sorted_as.as_str()), ("Icy One", "icy one"));
         for sought in ["icy", "seed1", "slips at"] {
             assert!(item.has_all(&[sought]), "{sought}");
         }

@@ -21,9 +21,9 @@ fn different_runs_never_read_alike_and_their_folders_are_behind_details() {
     let runs = ["climb-seed8-0123abcd", "climb-seed8-99ffabcd", "mine"];
     let run = |folder| (SavePlace::Run(Path::new("saves").join(folder)), 6, Ok(stopped_run()));
     let library = library_of(runs.map(run).into());
-    let names: Vec<&str> = library.items().iter().map(LibraryItem::name).collect();
+    let names: Vec<&str> = library.items.iter().map(LibraryItem::name).collect();
     assert_eq!(names, [format!("{RUN} (0123abcd)"), format!("{RUN} (99ffabcd)"), "mine".into()]);
-    let mut harness = Harness::new_ui(|ui| details(ui, &library.items()[0], false));
+    let mut harness = Harness::new_ui(|ui| details(ui, &library.items[0], false));
     assert!(!shows(&harness, "climb-seed8"));
     harness.get_by_label("Details").click();
     harness.run();
@@ -33,7 +33,7 @@ fn different_runs_never_read_alike_and_their_folders_are_behind_details() {
 #[test]
 fn an_exam_is_a_table_and_the_command_that_found_a_champion_is_behind_details() {
     let library = library_of(vec![(SavePlace::Shipped("robust"), 0, shipped("robust"))]);
-    let item = &library.items()[0];
+    let item = &library.items[0];
     let exam = &item.champion().expect("read").exam;
     let mut harness = Harness::new_ui(|ui| details(ui, item, false));
     let top = |label: &str| harness.get_by_label(label).rect().center().y;
