@@ -19,6 +19,7 @@ pub mod props;
 pub mod quality;
 pub mod sky;
 pub mod snake;
+pub mod stage_view;
 pub mod stairs;
 pub mod step_edges;
 pub mod step_labels;
