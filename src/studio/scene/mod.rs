@@ -14,6 +14,7 @@ pub mod meshes;
 mod mipmaps;
 pub mod name_tags;
 pub mod overlays;
+mod plain_sky;
 mod plants;
 pub mod props;
 pub mod quality;
@@ -52,6 +53,7 @@ pub(super) fn plugin(app: &mut App) {
         quality::watch_frames,
         wireframe::plugin,
         name_tags::plugin,
+        plain_sky::plugin,
         confetti::plugin,
     ));
 }
