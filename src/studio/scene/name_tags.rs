@@ -118,19 +118,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tag_at_the_edge_of_the_stage_is_not_cut() {
-        let stage = egui::Rect::from_min_max(egui::pos2(100.0, 0.0), egui::pos2(900.0, 500.0));
-        let tag =
-            |x: f32| egui::Rect::from_center_size(egui::pos2(x, 50.0), egui::vec2(140.0, 20.0));
-        for x in [105.0, 480.0, 890.0] {
-            let shown = within(tag(x), stage);
-            assert!(shown.left() >= stage.left() && shown.right() <= stage.right(), "{shown}");
-        }
-        assert_eq!(within(tag(480.0), stage), tag(480.0));
-        assert_eq!(within(tag(2000.0), stage), tag(2000.0), "out of sight");
-    }
-
-    #[test]
     fn a_tag_covers_no_head_and_no_other_tag_and_keeps_its_side() {
         let stage = egui::Rect::from_min_max(egui::pos2(385.0, 29.0), egui::pos2(1280.0, 613.0));
         let size = egui::vec2(150.0, 22.0);
@@ -150,9 +137,16 @@ mod tests {
             }
             assert_eq!(places(&tags, &mut sides, stage), placed, "the next frame");
         }
-        let mut sides = vec![1];
-        let alone = tags_of(0.0, 0.0)[..1].to_vec();
-        assert!(places(&alone, &mut sides, stage)[0].right() < alone[0].0.left(), "it stays");
-        assert!(places(&alone, &mut Vec::new(), stage)[0].bottom() < alone[0].0.top(), "above");
+        let alone = |x: f32, mut sides: Vec<usize>| {
+            let head = egui::Rect::from_center_size(egui::pos2(x, 300.0), egui::vec2(34.0, 30.0));
+            (head, places(&[(head, size)], &mut sides, stage)[0])
+        };
+        for x in [390.0, 800.0, 1275.0] {
+            let (head, tag) = alone(x, Vec::new());
+            assert!(stage.contains_rect(tag) && tag.bottom() < head.top(), "{tag}");
+        }
+        let (head, tag) = alone(800.0, vec![1]);
+        assert!(tag.right() < head.left(), "it stays at the left");
+        assert_eq!(alone(2000.0, Vec::new()).1.center().x, 2000.0, "out of sight");
     }
 }

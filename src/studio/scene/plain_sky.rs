@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use bevy::prelude::*;
 use bevy::render::render_resource::PipelineCache;
@@ -20,8 +19,8 @@ struct Compiling(Arc<AtomicBool>);
 
 /// Number of successive frames without compilation after which the picture is complete.
 const COMPLETE: u32 = 5;
-/// Time after which the stage is shown even if a pipeline never gets ready.
-const LONGEST: Duration = Duration::from_secs(60);
+/// Number of frames after which the stage is shown even if a pipeline never gets ready.
+const LONGEST: u32 = 3000;
 
 pub(super) fn plugin(app: &mut App) {
     let compiling = Compiling::default();
@@ -41,33 +40,32 @@ fn watch(compiling: Res<Compiling>, pipelines: Option<Res<PipelineCache>>) {
 #[derive(Debug, Default)]
 struct PictureWait {
     of: Option<Quality>,
-    waited: Duration,
+    covered: u32,
     complete: u32,
 }
 
 impl PictureWait {
-    /// Returns whether the stage is still to be covered in a frame that took this long.
-    fn goes_on(&mut self, quality: Quality, is_compiling: bool, frame: Duration) -> bool {
+    /// Returns whether the stage is still to be covered in a new frame.
+    fn goes_on(&mut self, quality: Quality, is_compiling: bool) -> bool {
         if self.of != Some(quality) {
             *self = Self { of: Some(quality), ..Self::default() };
         }
-        let goes_on = self.complete < COMPLETE && self.waited < LONGEST;
-        if quality != Quality::Beautiful || !goes_on {
-            return false;
+        let is_awaited = self.complete < COMPLETE && self.covered < LONGEST;
+        let goes_on = quality == Quality::Beautiful && is_awaited;
+        if goes_on {
+            self.complete = if is_compiling { 0 } else { self.complete + 1 };
+            self.covered += 1;
         }
-        self.complete = if is_compiling { 0 } else { self.complete + 1 };
-        self.waited += frame;
-        true
+        goes_on
     }
 }
 
 fn cover(
     mut contexts: EguiContexts,
-    (quality, compiling): (Res<StageQuality>, Res<Compiling>),
-    (area, time): (Res<StageArea>, Res<Time<Real>>),
+    (quality, compiling, area): (Res<StageQuality>, Res<Compiling>, Res<StageArea>),
     mut wait: Local<PictureWait>,
 ) -> Result {
-    if wait.goes_on(quality.now(), compiling.0.load(Ordering::Relaxed), time.delta()) {
+    if wait.goes_on(quality.now(), compiling.0.load(Ordering::Relaxed)) {
         let context = contexts.ctx_mut()?;
         let layer = egui::LayerId::new(egui::Order::Background, egui::Id::new("plain sky"));
         let sky = theme::flat(theme::of_context(context).horizon);
@@ -82,10 +80,9 @@ mod tests {
 
     #[test]
     fn the_sky_is_plain_until_a_beautiful_picture_is_complete_and_again_after_another_quality() {
-        let frame = Duration::from_millis(20);
         let mut wait = PictureWait::default();
         let mut covered = |quality, is_compiling: bool, frames: usize| {
-            (0..frames).filter(|_| wait.goes_on(quality, is_compiling, frame)).count()
+            (0..frames).filter(|_| wait.goes_on(quality, is_compiling)).count()
         };
         assert_eq!(covered(Quality::Fast, true, 9), 0, "it is drawn at once");
         for _ in 0..2 {
@@ -96,6 +93,10 @@ mod tests {
             assert_eq!(covered(Quality::Beautiful, true, 9), 0, "a later pipeline is a detail");
             assert_eq!(covered(Quality::Smooth, false, 9), 0);
         }
-        assert_eq!(covered(Quality::Beautiful, true, 9000), 3000, "at most a minute");
+        assert_eq!(
+            covered(Quality::Beautiful, true, 9000),
+            3000,
+            "a pipeline that never gets ready"
+        );
     }
 }

@@ -27,12 +27,9 @@ impl<'a> StageView<'a> {
 
     /// Returns the rectangle around a box with this half size, in egui points. `to_scene` moves the box from the origin to its place.
     fn around(&self, half: Vec3, to_scene: impl Fn(Vec3) -> Vec3) -> Option<egui::Rect> {
-        let ends = [-1.0, 1.0];
-        let signs = ends
-            .into_iter()
-            .flat_map(|x| ends.into_iter().flat_map(move |y| ends.map(|z| Vec3::new(x, y, z))));
-        let points = signs.map(|sign| self.point_of(to_scene(sign * half)));
-        Some(egui::Rect::from_points(&points.collect::<Option<Vec<egui::Pos2>>>()?))
+        let sign = |corner: u8| [1, 2, 4].map(|axis| if corner & axis == 0 { -1.0 } else { 1.0 });
+        let corner = |corner| self.point_of(to_scene(Vec3::from(sign(corner)) * half));
+        Some(egui::Rect::from_points(&(0..8).map(corner).collect::<Option<Vec<_>>>()?))
     }
 
     /// Returns the rectangle around a limb of a lane; the head is 0. `None` if the camera does not see all of it.

@@ -106,7 +106,7 @@ fn narrow(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     let [above, below] = [text.with_max_y(text.center().y), text.with_min_y(text.center().y)];
     let weak = weak(ui, style);
     let palette = theme::of(ui);
-    let way = write(ui, above, Align::Max, &item.way_in_words(), palette.text, false);
+    let way = write(ui, above, Align::Max, &item.way_text(" of the way"), palette.text, false);
     let name = above.with_max_x(above.right() - way - theme::GAP);
     write(ui, name, Align::Min, item.name(), palette.text, false);
     if let Some(words) = item.problem_words() {
@@ -128,7 +128,7 @@ fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
         write(ui, rest, Align::Min, words, problem_color(ui, style), false);
     }
     for (key, text, color) in [
-        (SortKey::Way, item.way_text(), palette.text),
+        (SortKey::Way, item.way_text(""), palette.text),
         (SortKey::Preset, item.preset_title().unwrap_or_default(), weak),
         (SortKey::Generation, item.generation_text(), weak),
         (SortKey::Date, item.date_text(), weak),

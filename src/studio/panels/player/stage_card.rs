@@ -54,9 +54,9 @@ impl CardRest {
     fn lasts(&mut self, now_s: f64, is_used: bool, covers: bool, is_urgent: bool) -> bool {
         self.used_s = if is_used { Some(now_s) } else { self.used_s };
         let since_s = self.covers_since_s.filter(|_| covers).unwrap_or(now_s);
+        self.covers_since_s = covers.then_some(since_s);
         let was_used = self.used_s.is_some_and(|used_s| now_s < used_s + USED_S);
         let stays = if is_urgent { is_used } else { was_used || now_s < since_s + COVERS_S };
-        self.covers_since_s = (covers && stays).then_some(since_s);
         stays || !covers
     }
 }
@@ -146,19 +146,17 @@ impl CardTable<'_> {
         let (room, taken, all) = (self.room, &self.taken, &self.kept_free);
         let places = CardRoom { room, taken, selected, all, corner: card.corner };
         let best = places.place(size, drawn);
+        let now = drawn.filter(|_| is_shown).and_then(|now| places.as_at(size, now));
         let rest = self.states.rests.entry(card.name).or_default();
-        let at = match drawn.filter(|_| is_shown).and_then(|now| places.as_at(size, now)) {
-            Some(now) => {
-                let (now_s, is_used) =
-                    (self.context.input(|input| input.time), is_used(self.context, now));
-                let is_urgent = selected.is_some_and(|limb| limb.intersects(now));
-                if rest.lasts(now_s, is_used, best != now, is_urgent) { now } else { best }
-            }
-            None => {
-                *rest = CardRest::default();
-                best
-            }
+        let lasts = |now: &egui::Rect| {
+            let now_s = self.context.input(|input| input.time);
+            let is_urgent = selected.is_some_and(|limb| limb.intersects(*now));
+            rest.lasts(now_s, is_used(self.context, *now), best != *now, is_urgent)
         };
+        let at = now.filter(lasts).unwrap_or_else(|| {
+            *rest = CardRest::default();
+            best
+        });
         let palette = theme::of_context(self.context);
         let shown =
             egui::Area::new(id).fixed_pos(at.min).constrain_to(room).show(self.context, |ui| {
@@ -272,34 +270,29 @@ mod tests {
         let mut rest = CardRest::default();
         for (now_s, is_used, covers, is_urgent, stays) in frames {
             assert_eq!(rest.lasts(now_s, is_used, covers, is_urgent), stays, "at {now_s} s");
+            rest = if stays { rest } else { CardRest::default() };
         }
     }
 
     #[test]
     fn a_pointer_that_is_near_a_card_or_comes_to_it_uses_it_and_one_that_drags_a_snake_does_not() {
         let card = egui::Rect::from_min_size(egui::pos2(400.0, 300.0), egui::vec2(200.0, 100.0));
-        let far = egui::pos2(100.0, 100.0);
-        let press = egui::Event::PointerButton {
-            pos: far,
-            button: egui::PointerButton::Primary,
-            pressed: true,
-            modifiers: egui::Modifiers::NONE,
-        };
-        let used_after = |events: &[egui::Event]| {
-            let context = egui::Context::default();
-            let mut is_used_now = false;
-            for (frame, event) in events.iter().enumerate() {
-                let (time, events) = (Some(frame as f64 * 0.02), vec![event.clone()]);
+        let used_after = |presses: bool, ways: &[f32]| {
+            let (context, mut is_used_now) = (egui::Context::default(), false);
+            for (frame, x) in ways.iter().enumerate() {
+                let (time, pos) = (Some(frame as f64 * 0.02), egui::pos2(*x, 350.0));
+                let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+                let press = egui::Event::PointerButton { pos, button, pressed: true, modifiers };
+                let presses = presses && frame == 0;
+                let mut events = vec![egui::Event::PointerMoved(pos)];
+                events.extend(presses.then_some(press));
                 let input = egui::RawInput { time, events, ..Default::default() };
                 let _ = context.run_ui(input, |ui| is_used_now = is_used(ui.ctx(), card));
             }
             is_used_now
         };
-        let at = |x: f32, y: f32| egui::Event::PointerMoved(egui::pos2(x, y));
-        assert!(!used_after(&[at(100.0, 100.0)]) && used_after(&[at(380.0, 290.0)]));
-        let comes: Vec<egui::Event> =
-            (0..8).map(|step| at(150.0 + 16.0 * step as f32, 350.0)).collect();
-        assert!(used_after(&comes), "it approaches");
-        assert!(!used_after(&[press, at(450.0, 350.0)]), "it drags something else");
+        assert!(!used_after(false, &[150.0]) && used_after(false, &[380.0]));
+        assert!(used_after(false, &[150.0, 166.0, 182.0, 198.0, 214.0, 230.0]), "it approaches");
+        assert!(!used_after(true, &[150.0, 450.0]), "it drags something else");
     }
 }

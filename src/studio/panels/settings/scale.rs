@@ -173,15 +173,6 @@ mod tests {
     }
 
     #[test]
-    fn a_logarithmic_scale_has_a_numbered_mark_at_zero_and_at_each_decade() {
-        let numbers =
-            |scale: Scale| -> Vec<String> { scale.marks().iter().map(f32::to_string).collect() };
-        assert_eq!(numbers(scale(0.0, 10.0, Some(0.01))), ["0", "0.01", "0.1", "1", "10"]);
-        assert_eq!(numbers(scale(0.05, 5.0, Some(0.05))), ["0.05", "0.1", "1", "5"]);
-        assert_eq!(numbers(scale(0.0, 0.1, Some(1.0e-6))).last().map(String::as_str), Some("0.1"));
-    }
-
-    #[test]
     fn the_pointer_reaches_zero_and_keys_leave_it() {
         let slip = scale(0.0, 1.0, Some(0.001));
         assert_eq!(slip.settled(0.0005, 0.4, true), 0.0);
@@ -204,11 +195,13 @@ mod tests {
     }
 
     #[test]
-    fn the_marks_of_both_kinds_of_scale_have_numbers() {
+    fn a_linear_scale_has_round_numbers_and_a_logarithmic_one_has_zero_and_each_decade() {
         let rail = egui::Rect::from_min_size(egui::pos2(10.0, 10.0), egui::vec2(260.0, 18.0));
         for (scale, expected) in [
-            (scale(0.0, 2.0, None), ["0", "2", "0.5", "1", "1.5"]),
-            (scale(0.0, 10.0, Some(0.01)), ["0", "10", "0.01", "0.1", "1"]),
+            (scale(0.0, 2.0, None), &["0", "2", "0.5", "1", "1.5"][..]),
+            (scale(0.0, 10.0, Some(0.01)), &["0", "10", "0.01", "0.1", "1"]),
+            (scale(0.05, 5.0, Some(0.05)), &["0.05", "5", "0.1", "1"]),
+            (scale(0.0, 0.1, Some(1.0e-6)), &["0", "0.1"]),
         ] {
             let context = egui::Context::default();
             let output = context.run_ui(egui::RawInput::default(), |ui| scale.paint(ui, rail));
@@ -216,7 +209,7 @@ mod tests {
                 egui::Shape::Text(text) => Some(text.galley.text()),
                 _ => None,
             });
-            assert_eq!(texts.collect::<Vec<_>>(), expected);
+            assert_eq!(texts.take(expected.len()).collect::<Vec<_>>(), expected);
         }
     }
 

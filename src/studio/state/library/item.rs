@@ -193,14 +193,9 @@ impl LibraryItem {
         Some(covered.clamp(0.0, 1.0))
     }
 
-    /// Returns the covered part of the way as text, such as "76 %", or an empty text if it is unknown.
-    pub fn way_text(&self) -> String {
-        self.way().map(in_percent).unwrap_or_default()
-    }
-
-    /// Returns the covered part of the way in words, such as "76 % of the way", or an empty text if it is unknown.
-    pub fn way_in_words(&self) -> String {
-        self.way().map(|way| format!("{} of the way", in_percent(way))).unwrap_or_default()
+    /// Returns the covered part of the way as text, such as "76 %" before `of_what`, or an empty text if it is unknown.
+    pub fn way_text(&self, of_what: &str) -> String {
+        self.way().map(|way| in_percent(way) + of_what).unwrap_or_default()
     }
 
     /// Returns the generation of a champion, or the number of finished generations of a run.
@@ -260,7 +255,7 @@ impl LibraryItem {
         }
         let kind = if self.place().run().is_some() { "run" } else { "" };
         let (date, generation) = (self.date_text(), self.generation_text());
-        let (way, preset) = (self.way_in_words(), self.preset_title().unwrap_or_default());
+        let (way, preset) = (self.way_text(" of the way"), self.preset_title().unwrap_or_default());
         let parts = [&self.name, kind, &way, &preset, &generation, &date];
         let said: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         said.join(", ")
@@ -309,9 +304,9 @@ mod tests {
             let place = SavePlace::Shipped(name);
             let read = read_entry(&place).map_err(EntryProblem::from);
             let mut item = LibraryItem::new(entry(place, EntryNotes::default()));
-            assert_eq!(item.way_text(), "", "not read yet");
+            assert_eq!(item.way_text(""), "", "not read yet");
             item.learn(read);
-            assert_eq!(item.way_text(), of_the_way, "{name}");
+            assert_eq!(item.way_text(""), of_the_way, "{name}");
         }
     }
 
