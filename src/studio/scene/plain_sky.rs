@@ -17,10 +17,8 @@ use crate::studio::ui::viewport::StageArea;
 #[derive(Resource, Debug, Clone, Default)]
 struct Compiling(Arc<AtomicBool>);
 
-/// Number of successive frames without compilation after which the picture is complete.
+/// Number of successive frames without compilation after which the picture is complete. The first frames have not asked for pipelines yet.
 const COMPLETE: u32 = 5;
-/// Number of frames after which the stage is shown even if a pipeline never gets ready.
-const LONGEST: u32 = 3000;
 
 pub(super) fn plugin(app: &mut App) {
     let compiling = Compiling::default();
@@ -36,41 +34,26 @@ fn watch(compiling: Res<Compiling>, pipelines: Option<Res<PipelineCache>>) {
     compiling.0.store(waits, Ordering::Relaxed);
 }
 
-/// The wait for the first complete picture of a quality.
-#[derive(Debug, Default)]
-struct PictureWait {
-    of: Option<Quality>,
-    covered: u32,
-    complete: u32,
-}
-
-impl PictureWait {
-    /// Returns whether the stage is still to be covered in a new frame.
-    fn goes_on(&mut self, quality: Quality, is_compiling: bool) -> bool {
-        if self.of != Some(quality) {
-            *self = Self { of: Some(quality), ..Self::default() };
-        }
-        let is_awaited = self.complete < COMPLETE && self.covered < LONGEST;
-        let goes_on = quality == Quality::Beautiful && is_awaited;
-        if goes_on {
-            self.complete = if is_compiling { 0 } else { self.complete + 1 };
-            self.covered += 1;
-        }
-        goes_on
-    }
+/// Returns the number of frames for which the stage stays covered after one for which `frames` are left.
+fn left_after(frames: u32, is_compiling: bool) -> u32 {
+    if is_compiling && frames > 0 { COMPLETE } else { frames.saturating_sub(1) }
 }
 
 fn cover(
     mut contexts: EguiContexts,
     (quality, compiling, area): (Res<StageQuality>, Res<Compiling>, Res<StageArea>),
-    mut wait: Local<PictureWait>,
+    mut left: Local<u32>,
 ) -> Result {
-    if wait.goes_on(quality.now(), compiling.0.load(Ordering::Relaxed)) {
+    if quality.is_changed() {
+        *left = if quality.now() == Quality::Beautiful { COMPLETE } else { 0 };
+    }
+    if *left > 0 {
         let context = contexts.ctx_mut()?;
         let layer = egui::LayerId::new(egui::Order::Background, egui::Id::new("plain sky"));
         let sky = theme::flat(theme::of_context(context).horizon);
         context.layer_painter(layer).rect_filled(area.rect(), 0.0, sky);
     }
+    *left = left_after(*left, compiling.0.load(Ordering::Relaxed));
     Ok(())
 }
 
@@ -79,24 +62,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_sky_is_plain_until_a_beautiful_picture_is_complete_and_again_after_another_quality() {
-        let mut wait = PictureWait::default();
-        let mut covered = |quality, is_compiling: bool, frames: usize| {
-            (0..frames).filter(|_| wait.goes_on(quality, is_compiling)).count()
-        };
-        assert_eq!(covered(Quality::Fast, true, 9), 0, "it is drawn at once");
-        for _ in 0..2 {
-            // The first frames have not asked for a pipeline yet.
-            assert_eq!(covered(Quality::Beautiful, false, 3), 3);
-            assert_eq!(covered(Quality::Beautiful, true, 50), 50);
-            assert_eq!(covered(Quality::Beautiful, false, 50), 5);
-            assert_eq!(covered(Quality::Beautiful, true, 9), 0, "a later pipeline is a detail");
-            assert_eq!(covered(Quality::Smooth, false, 9), 0);
-        }
-        assert_eq!(
-            covered(Quality::Beautiful, true, 9000),
-            3000,
-            "a pipeline that never gets ready"
-        );
+    fn the_sky_is_plain_until_nothing_was_compiled_for_some_frames_and_stays_away() {
+        let frames = [(false, 3), (true, 50), (false, 2), (true, 1), (false, 9), (true, 9)];
+        let mut left = COMPLETE;
+        let covered = frames.map(|(is_compiling, count)| {
+            let mut frame = || (left > 0, left = left_after(left, is_compiling)).0;
+            (0..count).filter(|_| frame()).count()
+        });
+        assert_eq!(covered, [3, 50, 2, 1, 5, 0], "a later pipeline is that of a detail");
     }
 }

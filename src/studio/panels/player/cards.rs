@@ -99,7 +99,7 @@ pub(crate) fn around_stage(
     // With one lane, the stairs rise from the lower left to the upper right, so the sky at the upper left is free.
     let card = |name, title: &str, occasion: String, corner| {
         let title = title.to_owned();
-        StageCard { name, title, occasion, corner, least_width: 0.0 }
+        StageCard { name, title, occasion, corner }
     };
     let small = |name| card(name, "", String::new(), egui::Align2::LEFT_TOP);
     if let Some(lesson) = situation.lesson {
@@ -147,8 +147,7 @@ pub(crate) fn around_stage(
         let size = CardSize::for_stage(egui::vec2(stage.width(), room.bottom() - bar.bottom()));
         let corner = egui::Align2::RIGHT_BOTTOM;
         let title = limb_title(focused, limb);
-        let (occasion, least_width) = (title.clone(), size.width());
-        let card = StageCard { name: "limb", title, occasion, corner, least_width };
+        let card = card("limb", &title, title.clone(), corner);
         let selected = limb_of(focused, limb);
         let is_playing = on_stage.playback.is_playing;
         table.card(&card, selected, |ui| limb_card(ui, focused, limb, is_playing, size))

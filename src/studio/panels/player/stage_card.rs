@@ -44,7 +44,8 @@ const COVERS_S: f64 = 1.5;
 struct CardRest {
     /// Last time at which the pointer was near the card, in seconds.
     used_s: Option<f64>,
-    /// Time since which the card covers something and another place would be better, in seconds.
+    /// Time since which the card covers something and another place would be better, in seconds. Minus infinity for a new card, which
+    /// moves at once.
     covers_since_s: Option<f64>,
 }
 
@@ -57,7 +58,7 @@ impl CardRest {
         self.covers_since_s = covers.then_some(since_s);
         let was_used = self.used_s.is_some_and(|used_s| now_s < used_s + USED_S);
         let stays = if is_urgent { is_used } else { was_used || now_s < since_s + COVERS_S };
-        stays || !covers
+        !covers || (stays && since_s.is_finite())
     }
 }
 
@@ -82,8 +83,6 @@ pub(super) struct StageCard {
     pub occasion: String,
     /// Corner of the stage at which the card is placed if it covers no snake there.
     pub corner: egui::Align2,
-    /// Minimum width of the contents, in points, until the card was drawn once.
-    pub least_width: f32,
 }
 
 /// The stage with the cards that were placed so far.
@@ -141,8 +140,8 @@ impl CardTable<'_> {
         let (drawn, is_shown) = self
             .context
             .memory(|memory| (memory.area_rect(id), memory.areas().visible_last_frame(&layer)));
-        // Before the first frame, the height of the card is unknown.
-        let size = drawn.map_or(egui::vec2(card.least_width, 0.0), |rect| rect.size());
+        // Before the first frame, which egui does not show, the size of the card is unknown.
+        let size = drawn.map_or(egui::Vec2::ZERO, |rect| rect.size());
         let (room, taken, all) = (self.room, &self.taken, &self.kept_free);
         let places = CardRoom { room, taken, selected, all, corner: card.corner };
         let best = places.place(size, drawn);
@@ -154,7 +153,8 @@ impl CardTable<'_> {
             rest.lasts(now_s, is_used(self.context, *now), best != *now, is_urgent)
         };
         let at = now.filter(lasts).unwrap_or_else(|| {
-            *rest = CardRest::default();
+            let covers_since_s = (!is_shown).then_some(f64::NEG_INFINITY);
+            *rest = CardRest { covers_since_s, used_s: None };
             best
         });
         let palette = theme::of_context(self.context);
@@ -220,7 +220,6 @@ mod tests {
                     title: "Race".to_owned(),
                     occasion: occasion.clone(),
                     corner: egui::Align2::LEFT_TOP,
-                    least_width: 0.0,
                 };
                 table.card(&card, None, |ui| {
                     ui.label("content");
@@ -272,6 +271,8 @@ mod tests {
             assert_eq!(rest.lasts(now_s, is_used, covers, is_urgent), stays, "at {now_s} s");
             rest = if stays { rest } else { CardRest::default() };
         }
+        rest.covers_since_s = Some(f64::NEG_INFINITY);
+        assert!(!rest.lasts(9.3, true, true, false), "a new card, whose size was unknown");
     }
 
     #[test]
