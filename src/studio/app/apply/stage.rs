@@ -20,7 +20,7 @@ use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_o
 use crate::studio::state::stairs_race::stairs_race;
 use crate::studio::state::sweep::sweep;
 use crate::studio::state::turns::Turns;
-use crate::studio::state::what_if::{another_beside, kept};
+use crate::studio::state::what_if::{ChangedStage, another_beside, kept};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::plain_name;
 
@@ -219,8 +219,9 @@ impl StageParams<'_, '_> {
                 })?)
             }
             StageCommand::Sweep(field) => {
-                let champions = self.to_change().champions;
-                champions.first().map(|champion| sweep(champion, field)).transpose()?
+                // In a what-if, this is the copy with the values that the sliders show.
+                let stage = ChangedStage { show: &self.to_change(), moment: None };
+                stage.current().map(|champion| sweep(champion, field)).transpose()?
             }
             StageCommand::RaceStairs => {
                 self.to_change().champions.first().map(stairs_race).transpose()?

@@ -19,7 +19,7 @@ pub(super) struct CardRoom<'a> {
     pub taken: &'a [Rect],
     /// Area of the selected limb, if it is in view.
     pub selected: Option<Rect>,
-    /// Areas of all limbs on the stage.
+    /// Areas of all limbs on the stage, and of the gate.
     pub all: &'a [Rect],
     /// Corner of the area that is chosen among equally good places.
     pub corner: Align2,
@@ -32,16 +32,7 @@ impl CardRoom<'_> {
     pub fn place(&self, size: Vec2, now: Option<Rect>) -> Rect {
         let candidates = self.candidates(size);
         let default = self.corner.align_size_within_rect(size, self.room);
-        // The size of the card may have changed since.
-        let distance = |place: &Rect, now: Rect| {
-            let corners = [place.min - now.min, place.max - now.max];
-            corners.into_iter().map(Vec2::length).fold(f32::INFINITY, f32::min)
-        };
-        let as_now = now.and_then(|now| {
-            let nearest = candidates.iter().copied();
-            let nearest = nearest.min_by(|a, b| distance(a, now).total_cmp(&distance(b, now)))?;
-            (distance(&nearest, now) < GAP).then_some(nearest)
-        });
+        let as_now = now.and_then(|now| self.as_at(size, now));
         if let Some(as_now) = as_now.filter(|place| self.covered(place, 0.0) == (0.0, 0.0)) {
             return as_now;
         }
@@ -54,6 +45,16 @@ impl CardRoom<'_> {
             (_, Some(best)) => best,
             (_, None) => default,
         }
+    }
+
+    /// Returns the place of a card of this size that is nearest to the card's place `now`; `None` if the card must move. The size of the card
+    /// may have changed.
+    pub fn as_at(&self, size: Vec2, now: Rect) -> Option<Rect> {
+        let distance =
+            |place: &Rect| (place.min - now.min).length().min((place.max - now.max).length());
+        let candidates = self.candidates(size).into_iter();
+        let nearest = candidates.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.filter(|place| distance(place) < GAP)
     }
 
     fn is_much_better(&self, place: &Rect, now: &Rect) -> bool {
