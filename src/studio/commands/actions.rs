@@ -262,7 +262,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
                 &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
                 Stage(Show(Pick::Generation(1))),
             ),
-            ("Show the saved champion", &["0"], Stage(Show(Pick::Opened(0)))),
+            ("Show the built-in champion", &["0"], Stage(Show(Pick::Opened(0)))),
             ("Follow evolution", &["W"], Stage(ToggleFollowEvolution)),
             ("Story: first, middle and latest generation", &["S"], Stage(TellStory)),
             ("Whole latest generation", &["I"], Stage(ShowGeneration(None))),

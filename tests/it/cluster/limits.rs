@@ -1,14 +1,16 @@
 //! A server that refuses something: both sides name its answer. What lacks room waits and goes on by itself, and what can never get
 //! better ends at once.
 
-use std::net::TcpStream;
 use std::process::Child;
 use std::sync::OnceLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::refusals::refusals;
-use super::server::{Process, Run, Server, empty, fill, run_hash, worker_that_tells};
+use super::server::{
+    Run, Server, TellingWorker, empty, fill, run_hash, wait_for_list, wait_for_workers,
+    worker_that_tells,
+};
 use crate::program::{folder, json_lines, run};
 
 const RUN: &str =
@@ -37,8 +39,8 @@ fn finished(mut run: Run) -> String {
 }
 
 /// Stops a worker with the interrupt key, and returns its messages.
-fn stopped(mut worker: Process) -> String {
-    worker.signal("-INT");
+fn stopped(worker: TellingWorker) -> String {
+    worker.process.signal("-INT");
     worker.said()
 }
 
@@ -68,17 +70,17 @@ fn f3_a_full_store_is_named_by_both_sides_and_the_run_goes_on_once_there_is_room
     let (place, url) = (folder(), server.url());
     let worker = worker_that_tells(&url);
     // The worker makes the streams, for which a full store has no room either.
-    sleep(Duration::from_secs(3));
+    wait_for_workers(&server, 1);
     fill(&server);
     let under_way = Run::start(place.path(), RUN, &url);
-    sleep(Duration::from_secs(8));
-    let listed = run(place.path(), &format!("machines --nats {url}"));
-    let listed = String::from_utf8(listed.stdout).expect("UTF-8");
-    assert!(listed.contains(&format!("    work cannot be stored: {FULL}")), "{listed}");
+    let of_run = format!("{url}: work cannot be stored: {FULL}");
+    under_way.wait_for(&of_run);
+    let listed = format!("    work cannot be stored: {FULL}");
+    wait_for_list(&server, "", |list| list.contains(&listed));
+    worker.wait_for(FULL);
     empty(&server);
     let by_run = finished(under_way);
     let by_worker = stopped(worker);
-    let of_run = format!("{url}: work cannot be stored: {FULL}");
     assert_eq!(by_run.lines().filter(|line| line.starts_with(&of_run)).count(), 1, "{by_run}");
     assert!(by_run.contains(&format!("{url}: work cannot be stored: over")), "{by_run}");
     let of_run = |line: &&str| line.starts_with("run ") && line.contains(FULL);
@@ -102,10 +104,8 @@ fn f3_limits_of_connections_streams_and_consumers_are_waited_for() {
     };
     let Some(mut server) = Server::start_as(&limited(2, 2, 1)) else { return };
     let (place, url) = (folder(), server.url());
-    let address = url.trim_start_matches("nats://").to_owned();
     // Without an own limit, the server would close a connection that says nothing after two seconds.
-    let taken = TcpStream::connect(&address).expect("the only connection");
-    sleep(Duration::from_millis(300));
+    let taken = server.take_only_connection();
     let listed = run(place.path(), &format!("machines --nats {url}"));
     assert_eq!(listed.status.code(), Some(1));
     let line = String::from_utf8(listed.stderr).expect("UTF-8");
@@ -113,23 +113,23 @@ fn f3_limits_of_connections_streams_and_consumers_are_waited_for() {
     assert!(line.starts_with(&format!("error: {url}: {connections}")), "{line}");
 
     let worker = worker_that_tells(&url);
-    sleep(Duration::from_secs(5));
+    worker.wait_for(connections);
     // The limits change while the connection is taken, so that the worker finds them as soon as there is room for it.
     server.change(&limited(1, 1, 100));
     drop(taken);
-    sleep(Duration::from_secs(6));
+    let streams = "the server says: maximum number of streams reached (code 400, error code 10027); remove a stream";
+    worker.wait_for(streams);
     server.change(&limited(2, 1, 100));
     let mut one = Run::start(place.path(), &RUN.replace("generations 4", "generations 400"), &url);
     one.wait_for_generations(1);
     let other = folder();
     let two = Run::start(other.path(), RUN, &url);
-    sleep(Duration::from_secs(10));
+    two.wait_for(
+        "the server says: maximum consumers limit reached (code 400, error code 10026); wait for another",
+    );
     one.stopped();
-    let by_run = finished(two);
+    finished(two);
     let by_worker = stopped(worker);
-    let consumers = "the server says: maximum consumers limit reached (code 400, error code 10026); wait for another";
-    let streams = "the server says: maximum number of streams reached (code 400, error code 10027); remove a stream";
-    assert!(by_run.contains(consumers), "{by_run}");
     for words in [connections, streams] {
         assert_eq!(by_worker.lines().filter(|line| line.contains(words)).count(), 1, "{by_worker}");
     }
@@ -189,7 +189,7 @@ fn f3_rights_that_are_missing_only_later_end_a_run_and_a_worker_with_an_error() 
     let (place, url) = (folder(), server.url());
     let mut worker = worker_that_tells(&url);
     let mut under_way = Run::start(place.path(), RUN, &url);
-    assert_eq!(code_of(&mut worker.0), Some(1));
+    assert_eq!(code_of(&mut worker.process.0), Some(1));
     let said = worker.said();
     let last = said.lines().last().expect("a line");
     let words = "the work failed: the server says: Permissions Violation for Publish to \"snakes.result.climb-seed7-";

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use futures_util::StreamExt;
 use serde_json::Value;
 
-use crate::program::{folder, snakes};
+use crate::program::{folder, run, snakes};
 
 /// A process that is killed when it is dropped.
 pub struct Process(pub Child);
@@ -22,14 +22,6 @@ impl Process {
         let id = self.0.id().to_string();
         let status = Command::new("kill").args([signal, &id]).status();
         assert!(status.expect("kill starts").success(), "kill {signal} {id}");
-    }
-
-    /// Waits for the end of the process, and returns its standard error.
-    pub fn said(&mut self) -> String {
-        let mut said = String::new();
-        let stderr = self.0.stderr.as_mut().expect("piped");
-        stderr.read_to_string(&mut said).expect("UTF-8");
-        said
     }
 }
 
@@ -128,6 +120,27 @@ impl Server {
         }
     }
 
+    /// Takes the only connection of a server that allows one.
+    ///
+    /// A connection that ended a moment ago, such as that of [`Self::restart`], can still count on the server. It then refuses the next
+    /// one right after its greeting.
+    pub fn take_only_connection(&self) -> TcpStream {
+        let began = Instant::now();
+        loop {
+            let mut taken = TcpStream::connect(("127.0.0.1", self.port)).expect("a connection");
+            taken.set_read_timeout(Some(Duration::from_millis(500))).expect("a timeout");
+            let (mut said, mut buffer) = (Vec::new(), [0; 4096]);
+            while let Ok(length @ 1..) = taken.read(&mut buffer) {
+                said.extend_from_slice(&buffer[..length]);
+            }
+            let said = String::from_utf8_lossy(&said);
+            if said.starts_with("INFO ") && !said.contains("-ERR") {
+                return taken;
+            }
+            assert!(began.elapsed() < Duration::from_secs(20), "no connection: {said}");
+        }
+    }
+
     /// Kills the server, as a power failure would.
     pub fn kill(&mut self) {
         self.process = None;
@@ -166,12 +179,53 @@ pub fn worker(url: &str) -> Process {
     Process(quiet.spawn().expect("the worker starts"))
 }
 
-/// Starts a worker with one thread whose messages can be read after its end.
-pub fn worker_that_tells(url: &str) -> Process {
+/// A worker whose messages are read while it works.
+pub struct TellingWorker {
+    pub process: Process,
+    stderr: Pipe,
+}
+
+impl TellingWorker {
+    /// Waits until one of the messages contains these words.
+    pub fn wait_for(&self, words: &str) {
+        self.stderr.wait_for(words);
+    }
+
+    /// Waits for the end of the worker, and returns its messages.
+    pub fn said(self) -> String {
+        String::from_utf8(self.stderr.whole()).expect("UTF-8")
+    }
+}
+
+/// Starts a worker with one thread whose messages can be read.
+pub fn worker_that_tells(url: &str) -> TellingWorker {
     let folder = std::env::temp_dir();
     let mut command = snakes(&folder, &format!("worker --nats {url} --threads 1"));
     let piped = command.stdout(Stdio::null()).stderr(Stdio::piped()).stdin(Stdio::null());
-    Process(piped.spawn().expect("the worker starts"))
+    let mut child = piped.spawn().expect("the worker starts");
+    let stderr = Pipe::read(child.stderr.take().expect("piped"));
+    TellingWorker { process: Process(child), stderr }
+}
+
+/// Waits until the list of the server's machines is as wanted, for at most a minute.
+pub fn wait_for_list(server: &Server, flags: &str, is_wanted: impl Fn(&str) -> bool) {
+    let began = Instant::now();
+    loop {
+        let listed =
+            run(&std::env::temp_dir(), &format!("machines --nats {} {flags}", server.url()));
+        let listed = String::from_utf8(listed.stdout).expect("UTF-8");
+        if is_wanted(&listed) {
+            return;
+        }
+        assert!(began.elapsed() < Duration::from_mins(1), "{listed}");
+    }
+}
+
+/// Waits until this number of workers is ready for work.
+pub fn wait_for_workers(server: &Server, count: usize) {
+    wait_for_list(server, "--json", |list| {
+        list.lines().filter(|line| line.contains("\"type\":\"worker\"")).count() == count
+    });
 }
 
 /// A pipe that is read while its process runs, so that it never fills.
@@ -196,6 +250,19 @@ impl Pipe {
     /// Returns the number of lines read so far.
     fn lines(&self) -> usize {
         self.bytes.lock().expect("no panic").iter().filter(|byte| **byte == b'\n').count()
+    }
+
+    /// Waits until the text read so far contains these words, for at most a minute.
+    fn wait_for(&self, words: &str) {
+        let began = Instant::now();
+        loop {
+            let said = String::from_utf8_lossy(&self.bytes.lock().expect("no panic")).into_owned();
+            if said.contains(words) {
+                return;
+            }
+            assert!(began.elapsed() < Duration::from_mins(1), "waited for {words:?}\n{said}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 
     /// Returns all bytes, after the end of the process.
@@ -230,6 +297,11 @@ impl Run {
             assert!(began.elapsed() < Duration::from_mins(5), "waited for generation {count}");
             std::thread::sleep(Duration::from_millis(10));
         }
+    }
+
+    /// Waits until one of the coordinator's messages contains these words.
+    pub fn wait_for(&self, words: &str) {
+        self.stderr.wait_for(words);
     }
 
     /// Waits until the coordinator has ended, for at most two minutes.

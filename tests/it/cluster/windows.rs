@@ -12,8 +12,7 @@ use super::server::{Server, worker};
 #[test]
 fn f3_a_window_waits_for_room_on_its_server_and_ends_what_the_server_refuses_for_good() {
     let Some(mut server) = Server::start_as("max_connections: 1\njetstream { }\n") else { return };
-    let taken = std::net::TcpStream::connect(("127.0.0.1", server.port)).expect("a connection");
-    sleep(Duration::from_millis(300));
+    let taken = server.take_only_connection();
     let options = BrokerOptions { url: server.url(), ..BrokerOptions::default() };
     let watch = ServerWatch::start(options).expect("a thread");
     let next = || {

@@ -3,22 +3,25 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use super::server::{Process, Run, Server, worker, worker_that_tells};
+use super::server::{Run, Server, TellingWorker, wait_for_workers, worker, worker_that_tells};
 use crate::program::{folder, run};
 
 /// A run that takes longer than these tests.
 const LONG: &str = "--no-render --preset climb --seed 7 --population 200 --generations 500";
 
 /// Stops a worker with the interrupt key, and returns its messages. The worker must end within two seconds.
-fn stopped(mut worker: Process, when: &str) -> String {
+fn stopped(mut worker: TellingWorker, when: &str) -> String {
     let began = Instant::now();
-    worker.signal("-INT");
-    while worker.0.try_wait().expect("a state").is_none() {
+    worker.process.signal("-INT");
+    let status = loop {
+        if let Some(status) = worker.process.0.try_wait().expect("a state") {
+            break status;
+        }
         assert!(began.elapsed() < Duration::from_secs(2), "{when}: the worker goes on");
         sleep(Duration::from_millis(20));
-    }
+    };
     let said = worker.said();
-    assert!(worker.0.wait().expect("ended").success(), "{when}: {said}");
+    assert!(status.success(), "{when}: {said}");
     let last = said.lines().last().expect("a line");
     assert!(last.starts_with("worker ") && last.contains(": stopped; "), "{when}: {said}");
     said
@@ -33,14 +36,17 @@ fn of_server<'a>(said: &'a str, server: &Server) -> Vec<&'a str> {
 #[test]
 fn a_worker_could_not_be_stopped_while_its_server_was_gone() {
     let Some(mut server) = Server::start() else { return };
-    let mut workers: Vec<Process> = (0..7).map(|_| worker_that_tells(&server.url())).collect();
+    let mut workers: Vec<TellingWorker> =
+        (0..7).map(|_| worker_that_tells(&server.url())).collect();
     let mut next = || workers.pop().expect("another one");
-    sleep(Duration::from_secs(6));
+    wait_for_workers(&server, 7);
     stopped(next(), "idle");
     let place = folder();
-    let run = Run::start(place.path(), LONG, &server.url());
-    sleep(Duration::from_secs(6));
-    let said = stopped(next(), "at work");
+    let mut run = Run::start(place.path(), LONG, &server.url());
+    let at_work = next();
+    at_work.wait_for("computing for climb-seed7-");
+    run.wait_for_generations(2);
+    let said = stopped(at_work, "at work");
     let host = snakes_cluster::host_name();
     let begins = said.lines().filter(|line| line.starts_with("computing for climb-seed7-"));
     let begins: Vec<&str> = begins.collect();
@@ -70,11 +76,13 @@ fn a_worker_that_dies_is_told_once() {
     let dies = worker_that_tells(&server.url());
     let place = folder();
     let run = Run::start(place.path(), &format!("{LONG} --expect-workers 2"), &server.url());
-    sleep(Duration::from_secs(8));
+    dies.wait_for("computing for climb-seed7-");
     drop(dies);
-    sleep(Duration::from_secs(9));
+    run.wait_for(" lost");
+    // A second message would follow when the worker is listed again without a sign of it.
+    sleep(Duration::from_secs(4));
     stopped(stays, "at the end");
-    sleep(Duration::from_secs(1));
+    run.wait_for(" left");
     let said = run.stopped();
     assert_eq!(said.lines().filter(|line| line.ends_with(" left")).count(), 1, "{said}");
     let lost: Vec<&str> = said.lines().filter(|line| line.contains(" lost")).collect();
@@ -92,7 +100,7 @@ fn a_server_that_is_away_is_told_in_two_lines() {
         let worker = worker_that_tells(&server.url());
         let place = folder();
         let run = Run::start(place.path(), LONG, &server.url());
-        sleep(Duration::from_secs(8));
+        worker.wait_for("computing for climb-seed7-");
         if is_killed {
             server.kill()
         } else {
@@ -101,8 +109,10 @@ fn a_server_that_is_away_is_told_in_two_lines() {
         // The pause is longer than a worker may be silent.
         sleep(Duration::from_secs(7));
         server.restart();
-        sleep(Duration::from_secs(5));
+        worker.wait_for("connected again");
+        run.wait_for("connected again");
         let by_worker = stopped(worker, "after the fault");
+        run.wait_for(" left");
         let by_run = run.stopped();
         for said in [&by_worker, &by_run] {
             let lines = of_server(said, &server);
@@ -123,9 +133,9 @@ fn a_run_that_waits_says_how_many_workers_there_are_and_how_to_start_and_to_cont
     let Some(server) = Server::start() else { return };
     let place = folder();
     let run = Run::start(place.path(), &format!("{LONG} --expect-workers 3"), &server.url());
-    sleep(Duration::from_secs(5));
+    run.wait_for("0 of 3 workers; waiting");
     let _workers = [worker(&server.url()), worker(&server.url())];
-    sleep(Duration::from_secs(6));
+    run.wait_for("2 of 3 workers; waiting");
     let said = run.stopped();
     let url = server.url();
     for words in [

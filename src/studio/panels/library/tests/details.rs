@@ -39,7 +39,7 @@ fn an_exam_is_a_table_and_the_command_that_found_a_champion_is_behind_details() 
     let top = |label: &str| harness.get_by_label(label).rect().center().y;
     for result in exam.iter().filter(|result| result.each.is_empty()) {
         let title = snakes_core::schema::Choices::choice(result.suite).title;
-        let landed = format!("{} of {} landed", result.landed, result.trials);
+        let landed = format!("{} of {} climbed", result.landed, result.trials);
         let beside = harness.get_all_by_label(&landed).map(|of| of.rect().center().y);
         assert!(beside.into_iter().any(|y| (y - top(title)).abs() < 3.0), "{title}: {landed}");
     }
