@@ -220,8 +220,8 @@ pub(crate) fn actions() -> &'static [Action] {
 /// Returns the actions of a menu, in their order.
 fn rows(menu: Menu) -> Vec<ActionRow> {
     use StageCommand::{
-        KeepChange, Leave, RaceGenerations, RaceLeaders, RaceStairs, Show, ShowGeneration, Single,
-        TellStory, ToggleFollowEvolution, TryAnother,
+        KeepChange, Leave, RaceGenerations, RaceKnockOuts, RaceLeaders, RaceStairs, Show,
+        ShowGeneration, Single, TellStory, ToggleFollowEvolution, TryAnother,
     };
     let overlay = |of: Overlay| View(ViewCommand::ToggleOverlay(of));
     let panel = |of: PanelKind| (of.name(), of.keys(), Window(WindowCommand::OpenPanel(of)));
@@ -268,6 +268,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
             ("Whole latest generation", &["I"], Stage(ShowGeneration(None))),
             ("Race generations", &["N"], Stage(RaceGenerations)),
             ("Race best 10 of the latest generation", &["M"], Stage(RaceLeaders(None))),
+            ("Why does it climb? Take away one joint at a time", &[], Stage(RaceKnockOuts)),
             ("Race the snake over ten staircases", &[], Stage(RaceStairs)),
             ("Examine the snake on 100 unseen staircases", &[], Exam(ExamCommand::Examine)),
         ],

@@ -173,6 +173,8 @@ pub(super) enum StageCommand {
     Sweep(String),
     /// Show the snake on its own stairs and on the built-in ones, side by side.
     RaceStairs,
+    /// Show the snake beside copies that each lack the torque of one joint or for one kind of motion.
+    RaceKnockOuts,
     /// Accept the change of a what-if, and remove the lane without it.
     KeepChange,
     /// Keep the changed lane of a what-if. The next change then adds another lane beside it.

@@ -5,6 +5,7 @@ pub mod chart_export;
 pub mod current_run;
 pub mod files;
 pub mod following;
+pub mod knock_outs;
 mod latest_run;
 pub mod lessons;
 pub mod library;

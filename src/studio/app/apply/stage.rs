@@ -16,6 +16,7 @@ use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode, end_s, placed};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
+use crate::studio::state::knock_outs::knock_outs;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
 use crate::studio::state::stairs_race::stairs_race;
 use crate::studio::state::sweep::sweep;
@@ -183,6 +184,7 @@ impl StageParams<'_, '_> {
             | StageCommand::ShowGeneration(_)
             | StageCommand::Sweep(_)
             | StageCommand::RaceStairs
+            | StageCommand::RaceKnockOuts
             | StageCommand::RaceGenerations
             | StageCommand::RaceLeaders(_) => {
                 self.present_others(self.chosen(command, run, opening)?, notices);
@@ -225,6 +227,9 @@ impl StageParams<'_, '_> {
             }
             StageCommand::RaceStairs => {
                 self.to_change().champions.first().map(stairs_race).transpose()?
+            }
+            StageCommand::RaceKnockOuts => {
+                self.to_change().champions.first().map(knock_outs).transpose()?
             }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),

@@ -32,6 +32,9 @@ pub(crate) fn generation_card(
         let hint = "Show only the best snake of this generation";
         let single = Command::Stage(StageCommand::Single);
         CommandButton::new("Only the best", hint, single).show(ui, commands);
+        let hint = "Race it against copies that each lack one joint or one motion: the less far a copy gets, the more the climb needs what it lacks";
+        let why = Command::Stage(StageCommand::RaceKnockOuts);
+        CommandButton::new("Why does it climb?", hint, why).show(ui, commands);
     });
     let champion = best.staged.champion();
     if champion.evaluation.is_on_landing(&champion.trial.stairs) {
