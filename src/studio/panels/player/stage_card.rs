@@ -144,13 +144,14 @@ impl CardTable<'_> {
         let size = drawn.map_or(egui::Vec2::ZERO, |rect| rect.size());
         let (room, taken, all) = (self.room, &self.taken, &self.kept_free);
         let places = CardRoom { room, taken, selected, all, corner: card.corner };
-        let best = places.place(size, drawn);
+        let best = places.place(size);
         let now = drawn.filter(|_| is_shown).and_then(|now| places.as_at(size, now));
         let rest = self.states.rests.entry(card.name).or_default();
         let lasts = |now: &egui::Rect| {
             let now_s = self.context.input(|input| input.time);
             let is_urgent = selected.is_some_and(|limb| limb.intersects(*now));
-            rest.lasts(now_s, is_used(self.context, *now), best != *now, is_urgent)
+            let covers = places.is_much_better(&best, now);
+            rest.lasts(now_s, is_used(self.context, *now), covers, is_urgent)
         };
         let at = now.filter(lasts).unwrap_or_else(|| {
             let covers_since_s = (!is_shown).then_some(f64::NEG_INFINITY);
