@@ -75,7 +75,7 @@ pub(super) struct StudioParams<'w, 's> {
 impl StudioParams<'_, '_> {
     /// Returns whether a presentation and a lesson are open.
     fn frames(&self) -> [bool; 2] {
-        [self.workspace.is_presenting(), self.lessons.view().is_some()]
+        [self.workspace.is_presenting, self.lessons.view().is_some()]
     }
 
     /// Executes a command. The error is a sentence for the user.

@@ -138,7 +138,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
     let size = |window: &Window| (logical(window.width()), logical(window.height()));
     let window_size = chosen.window.iter().next().map(size);
     // In the presenting mode, the window's size and the loop are not the user's choice.
-    let presents = chosen.workspace.is_presenting();
+    let presents = chosen.workspace.is_presenting;
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
     let now = Preferences {
         theme: chosen.theme.name().to_owned(),

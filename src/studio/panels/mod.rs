@@ -149,7 +149,7 @@ fn draw(
     }
     theme::show(&context, *data.theme);
     workspace.scale.fit(context.content_rect().size() * context.zoom_factor());
-    let is_presenting = workspace.is_presenting();
+    let is_presenting = workspace.is_presenting;
     let scale = match is_presenting {
         true => UiScale::presenting(context.content_rect().size() * context.zoom_factor()),
         false => workspace.scale.shown(),

@@ -127,7 +127,7 @@ impl Files {
                 self.open(&path)?;
             }
             FileCommand::ShowSaves => {
-                library.prepare_folder()?;
+                library.saves.prepare().map_err(|error| error.to_string())?;
                 self.open(library.saves.path())?;
             }
             FileCommand::CopyPicture(path) => self.copying.start(Copied::Picture(path.clone()))?,

@@ -140,14 +140,6 @@ impl Library {
         self.unanswered = (self.unanswered.0 + 1, Some((question, reason)));
     }
 
-    /// Creates the saves folder, if it does not exist yet.
-    ///
-    /// # Errors
-    /// The folder cannot be created.
-    pub fn prepare_folder(&self) -> Result<(), String> {
-        self.saves.prepare().map_err(|error| error.to_string())
-    }
-
     /// Returns the progress of the exam in words, and its finished share from 0 to 1, if an exam is in progress.
     pub fn exam_under_way(&self) -> Option<(String, f32)> {
         self.examination.as_ref().map(Examination::progress)

@@ -25,6 +25,7 @@ use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::{Library, LibraryItem};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::accessible::named;
+use crate::studio::ui::text_prompt::TextPrompt;
 use crate::studio::ui::text_rows::{explain, problem};
 use crate::studio::ui::theme;
 use snakes_core::save::library::{EXPORTS, SavePlace};
@@ -149,7 +150,9 @@ impl LibraryPanel {
                 }
                 FileQuestion::Open | FileQuestion::Import => String::new(),
             };
-            self.ask_for_path(question.clone(), suggestion, Some(reason.clone()));
+            let (question, reason) = (question.clone(), reason.clone());
+            let prompt = TextPrompt::new(suggestion);
+            self.path_prompt = Some(PathPrompt { question, reason, prompt });
         }
         if library.export_requests != self.export_requests {
             self.export_requests = library.export_requests;

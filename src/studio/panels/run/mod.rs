@@ -265,7 +265,7 @@ const MAX_LISTED_CHANGES: usize = 12;
 
 /// Draws the button that starts the experiment of the report or, if that is the next run, one of the standard climb.
 fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-    let (label, preset, hint) = if run.next_preset() == REPORT {
+    let (label, preset, hint) = if run.next_plan().preset == REPORT {
         ("Run the standard climb", CLIMB, "Start a run that climbs to the landing")
     } else {
         (

@@ -1,7 +1,7 @@
 //! Tests of the run panel.
 
 use super::*;
-use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, every_section};
 use crate::studio::panels::testing::{self, Sent, press, set, shows, type_into};
 use crate::studio::state::current_run::prepared_run as run;
 use crate::studio::ui::notifications::Notices;
@@ -93,8 +93,7 @@ fn a_new_run_is_disabled_while_a_value_is_invalid() {
     let sent = sent(&run, |harness| {
         type_into(harness, "Population", "a");
         assert!(shows(harness, "Population is \"a\"; allowed: 1 to"));
-        harness.get_by_label("New run").click();
-        harness.run();
+        click(harness, "New run");
     });
     assert_eq!(sent, []);
 }
@@ -104,8 +103,7 @@ fn a_typed_seed_is_sent_before_the_command_of_a_button() {
     let run = run();
     let sent = sent(&run, |harness| {
         type_into(harness, "Seed", "9");
-        harness.get_by_label("Start").click();
-        harness.run();
+        click(harness, "Start");
     });
     assert_eq!(sent, [Command::Plan(PlanCommand::SetSeed(9)), Command::Run(RunCommand::Start)]);
 }
@@ -145,9 +143,8 @@ fn the_selected_strategy_shows_its_settings_and_the_others_are_reachable() {
     let is_shown = |run: &CurrentRun, clicks: &[&str], label: &str| {
         let mut is_shown = false;
         sent(run, |harness| {
-            for click in clicks {
-                harness.get_by_label(click).click();
-                harness.run();
+            for label in clicks {
+                click(harness, label);
             }
             is_shown = harness.query_all_by_label(label).next().is_some();
         });
@@ -206,8 +203,7 @@ fn the_first_view_has_the_main_settings_and_the_others_are_below_a_fold() {
         assert!(harness.query_all_by_label_contains(shown).next().is_some(), "{shown}");
     }
     assert!(!shows(&harness, "Seed") && !shows(&harness, "Strategy"));
-    harness.get_by_label(HOW_IT_LEARNS).click();
-    harness.run();
+    click(&mut harness, HOW_IT_LEARNS);
     assert!(shows(&harness, "Seed") && shows(&harness, "Strategy"));
 }
 
@@ -273,12 +269,10 @@ fn at_every_width_nothing_is_wider_than_the_panel() {
         );
         harness.run();
         for title in ["Other strategies", "Torques", "Waves and gaits", "Random snakes"] {
-            harness.get_by_label(title).click();
-            harness.run();
+            click(&mut harness, title);
         }
         for kind in &StrategyKind::ALL[1..5] {
-            harness.get_by_label(kind.title()).click();
-            harness.run();
+            click(&mut harness, kind.title());
         }
         assert_nothing_is_wider_than(&harness, width);
         // Each section shows its settings when it is unfolded.

@@ -34,7 +34,7 @@ fn seen(app: &mut App) -> Seen {
         ("selection", format!("{:?}", (selection.lane, selection.limb))),
         ("following", world.resource::<Following>().follows_evolution().to_string()),
         ("friction", next.trial.surface.friction.to_string()),
-        ("presenting", world.resource::<Workspace>().is_presenting().to_string()),
+        ("presenting", world.resource::<Workspace>().is_presenting.to_string()),
     ])
 }
 

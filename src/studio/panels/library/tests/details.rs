@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::studio::panels::library::details::details;
+use crate::studio::panels::settings::tests::click;
 
 #[test]
 fn the_details_of_the_run_that_is_open_in_this_window_say_so() {
@@ -25,8 +26,7 @@ fn different_runs_never_read_alike_and_their_folders_are_behind_details() {
     assert_eq!(names, [format!("{RUN} (0123abcd)"), format!("{RUN} (99ffabcd)"), "mine".into()]);
     let mut harness = Harness::new_ui(|ui| details(ui, &library.items[0], false));
     assert!(!shows(&harness, "climb-seed8"));
-    harness.get_by_label("Details").click();
-    harness.run();
+    click(&mut harness, "Details");
     assert!(shows(&harness, "Folder climb-seed8-0123abcd"));
 }
 
@@ -45,7 +45,6 @@ fn an_exam_is_a_table_and_the_command_that_found_a_champion_is_behind_details() 
     }
     assert!(shows(&harness, "reaches the landing in 98 of 100 varied trials."));
     assert!(!shows(&harness, "snakes --no-render"));
-    harness.get_by_label("Details").click();
-    harness.run();
+    click(&mut harness, "Details");
     assert!(shows(&harness, "Found by: snakes --no-render"));
 }
