@@ -8,6 +8,7 @@ use bevy::prelude::*;
 
 use super::quit::QuitRequest;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
+use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::share::ShareCommand;
@@ -74,7 +75,7 @@ pub(super) struct StudioParams<'w, 's> {
 impl StudioParams<'_, '_> {
     /// Returns whether a presentation and a lesson are open.
     fn frames(&self) -> [bool; 2] {
-        [self.workspace.is_presenting(), self.lessons.view().is_some()]
+        [self.workspace.is_presenting, self.lessons.view().is_some()]
     }
 
     /// Executes a command. The error is a sentence for the user.
@@ -116,6 +117,9 @@ impl StudioParams<'_, '_> {
                 if let Some(news) = workspace.apply(command) {
                     notices.update("panel size", news.to_owned());
                 }
+            }
+            Command::Library(LibraryCommand::SaveSnake) => {
+                library.save(&stage.selected().ok_or("There is no snake on the stage.")?)?;
             }
             Command::Library(command) => {
                 stage.present_others(library.apply(command, history, notices)?, notices);
@@ -213,6 +217,7 @@ fn changes_own_run(command: &Command) -> bool {
         Command::Run(
             RunCommand::Start
                 | RunCommand::SingleGeneration
+                | RunCommand::Extend
                 | RunCommand::New
                 | RunCommand::Reset
                 | RunCommand::Continue(_)

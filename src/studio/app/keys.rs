@@ -3,7 +3,7 @@
 use bevy::input::keyboard::{Key, KeyboardInput};
 use bevy::prelude::*;
 use bevy_egui::egui::Key as KeyPosition;
-use bevy_egui::helpers::bevy_to_egui_physical_key;
+use bevy_egui::helpers::{bevy_to_egui_key, bevy_to_egui_physical_key};
 use bevy_egui::input::EguiWantsInput;
 
 use crate::studio::commands::actions::{Situation, of_keys};
@@ -130,69 +130,18 @@ fn of_presenter(key: &Key, code: KeyCode) -> Option<Command> {
         // A clicker sends the position of B or of the full stop, whatever the layout makes of it.
         _ if matches!(code, KeyCode::KeyB | KeyCode::Period) => black(),
         Key::Character(text) if matches!(text.as_str(), "b" | "B" | ".") => black(),
-        key if is_of_keyboard_itself(key) => None,
+        // egui knows no keys that only modify others, such as the keyboard's layout, or control the computer: sound, light.
+        key if !matches!(key, Key::Character(_)) && bevy_to_egui_key(key).is_none() => None,
         _ => Some(Command::Window(WindowCommand::TogglePresenting)),
     }
-}
-
-/// Returns whether a key only modifies other keys, such as the keyboard's layout, or controls the computer: sound, light, pictures of the
-/// screen.
-fn is_of_keyboard_itself(key: &Key) -> bool {
-    matches!(
-        key,
-        Key::Shift
-            | Key::Control
-            | Key::Alt
-            | Key::AltGraph
-            | Key::Super
-            | Key::Meta
-            | Key::Hyper
-            | Key::Symbol
-            | Key::SymbolLock
-            | Key::Fn
-            | Key::FnLock
-            | Key::CapsLock
-            | Key::NumLock
-            | Key::ScrollLock
-            | Key::GroupFirst
-            | Key::GroupLast
-            | Key::GroupNext
-            | Key::GroupPrevious
-            | Key::ModeChange
-            | Key::Compose
-            | Key::Convert
-            | Key::NonConvert
-            | Key::HangulMode
-            | Key::HanjaMode
-            | Key::KanjiMode
-            | Key::KanaMode
-            | Key::Eisu
-            | Key::ZenkakuHankaku
-            | Key::PrintScreen
-            | Key::AudioVolumeUp
-            | Key::AudioVolumeDown
-            | Key::AudioVolumeMute
-            | Key::BrightnessUp
-            | Key::BrightnessDown
-            | Key::Unidentified(_)
-            | Key::Dead(_)
-    )
 }
 
 /// Returns the name of a shortcut, such as `Ctrl Shift Z`; `None` for a key without a name.
 fn name_of(key: &Key, held: Held) -> Option<String> {
     let (name, is_letter) = match key {
-        Key::Space => ("Space".to_owned(), true),
-        Key::Home => ("Home".to_owned(), true),
-        Key::End => ("End".to_owned(), true),
-        Key::ArrowLeft => ("Left".to_owned(), true),
-        Key::ArrowRight => ("Right".to_owned(), true),
-        Key::Escape => ("Esc".to_owned(), true),
-        Key::F1 => ("F1".to_owned(), true),
-        Key::F5 => ("F5".to_owned(), true),
-        Key::F11 => ("F11".to_owned(), true),
         Key::Character(text) => (text.to_uppercase(), text.chars().all(char::is_alphabetic)),
-        _ => return None,
+        Key::Escape => ("Esc".to_owned(), true),
+        named => (bevy_to_egui_key(named)?.name().to_owned(), true),
     };
     let control = if held.control { "Ctrl " } else { "" };
     // Keyboards differ in which characters need Shift, so Shift is ignored for characters.

@@ -10,7 +10,7 @@ use crate::studio::scene::overlays::Overlays;
 use crate::studio::scene::quality::StageQuality;
 use crate::studio::stage::playback::Playback;
 use crate::studio::state::files::{Files, RecentFiles};
-use crate::studio::state::lessons::Lessons;
+use crate::studio::state::lessons::{Lessons, present_title};
 use crate::studio::state::machines::MachinesLink;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
@@ -95,7 +95,7 @@ fn restore(
     chosen.files.recent = RecentFiles::from_texts(&recent);
     chosen.machines.remember(&server);
     chosen.workspace.unfolded = unfolded.into_iter().collect();
-    chosen.lessons.finished = finished_lessons.into_iter().collect();
+    chosen.lessons.finished = finished_lessons.into_iter().map(present_title).collect();
     chosen.workspace.scale.choose(ui_scale);
     chosen.workspace.layout = Layout::from_text(&layout);
     let shown = Overlay::ALL.into_iter().filter(|of| overlays.iter().any(|name| name == of.name()));
@@ -138,7 +138,7 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
     let size = |window: &Window| (logical(window.width()), logical(window.height()));
     let window_size = chosen.window.iter().next().map(size);
     // In the presenting mode, the window's size and the loop are not the user's choice.
-    let presents = chosen.workspace.is_presenting();
+    let presents = chosen.workspace.is_presenting;
     let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
     let now = Preferences {
         theme: chosen.theme.name().to_owned(),

@@ -37,7 +37,7 @@ fn present(
     mut notices: ResMut<Notices>,
 ) {
     turns.is_held = workspace.is_black();
-    let is_presenting = workspace.is_presenting();
+    let is_presenting = workspace.is_presenting;
     if is_presenting == before.is_some() {
         return;
     }
@@ -67,7 +67,7 @@ fn sway(
     time: Res<Time<Real>>,
     mut swayed_s: Local<f32>,
 ) {
-    if !workspace.is_presenting() {
+    if !workspace.is_presenting {
         *swayed_s = 0.0;
         return;
     }
@@ -107,7 +107,7 @@ fn hide_resting_pointer(
 ) {
     let (window, mut cursor) = window.into_inner();
     let rests = pointer.is_to_hide(window.cursor_position(), time.delta());
-    let is_visible = !(rests && workspace.is_presenting());
+    let is_visible = !(rests && workspace.is_presenting);
     if cursor.visible != is_visible {
         cursor.visible = is_visible;
     }

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use super::Command::{self, Exam, File, Player, Run, Share, Stage, View, Window};
 use super::camera_mode::CameraMode;
 use super::files::{FileCommand, FileQuestion};
+use super::library::LibraryCommand;
 use super::modal::Modal;
 use super::overlay::Overlay;
 use super::panel::PanelKind;
@@ -118,8 +119,9 @@ impl Action {
                 return now.digit.map(shown);
             }
             Run(RunCommand::Start) if now.is_finished => {
-                let text = "This run is finished. \"New run\" begins another one.".to_owned();
-                return Some(Command::Notify(text));
+                let text =
+                    "This run is finished. The Watch panel continues it, or begins another one.";
+                return Some(Command::Notify(text.to_owned()));
             }
             Stage(StageCommand::Leave) if now.is_covered => {
                 return Some(Window(WindowCommand::CloseModal));
@@ -134,6 +136,8 @@ impl Action {
             Command::Redo => now.can_redo,
             Share(ShareCommand::Cancel) => now.is_sharing,
             Share(ShareCommand::Ask(_)) => !now.is_sharing,
+            Run(RunCommand::ShowHash | RunCommand::Extend) => now.is_finished,
+            Stage(StageCommand::ToggleFollowEvolution) => !now.is_finished,
             Stage(StageCommand::KeepChange) => now.is_what_if,
             Stage(StageCommand::TryAnother) => now.can_try_another,
             Stage(StageCommand::Leave) => now.can_leave,
@@ -200,6 +204,9 @@ pub(crate) fn actions() -> &'static [Action] {
                 Window(WindowCommand::Enlarge) => {
                     "A quarter larger; after the largest, the usual size"
                 }
+                Command::Library(LibraryCommand::SaveSnake) => {
+                    "The selected snake on the stage, into the library"
+                }
                 _ => "",
             };
             Action { menu, name, keys, hint, command }
@@ -213,8 +220,8 @@ pub(crate) fn actions() -> &'static [Action] {
 /// Returns the actions of a menu, in their order.
 fn rows(menu: Menu) -> Vec<ActionRow> {
     use StageCommand::{
-        KeepChange, Leave, RaceGenerations, RaceLeaders, RaceStairs, Show, ShowGeneration, Single,
-        TellStory, ToggleFollowEvolution, TryAnother,
+        KeepChange, Leave, RaceGenerations, RaceKnockOuts, RaceLeaders, RaceStairs, Show,
+        ShowGeneration, Single, TellStory, ToggleFollowEvolution, TryAnother,
     };
     let overlay = |of: Overlay| View(ViewCommand::ToggleOverlay(of));
     let panel = |of: PanelKind| (of.name(), of.keys(), Window(WindowCommand::OpenPanel(of)));
@@ -225,6 +232,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
         Menu::File => vec![
             ("New run", &["Ctrl N"], Run(RunCommand::New)),
             ("Open…", &["Ctrl O"], File(FileCommand::Ask(FileQuestion::Open))),
+            ("Save snake", &["Ctrl S"], Command::Library(LibraryCommand::SaveSnake)),
             ("Import…", &["Ctrl I"], File(FileCommand::Ask(FileQuestion::Import))),
             ("Export…", &["Ctrl E"], File(FileCommand::AskExport)),
             ("Show saves folder", &[], File(FileCommand::ShowSaves)),
@@ -246,18 +254,21 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
         Menu::Run => vec![
             ("Start or pause evolution", &["E"], Run(RunCommand::Start)),
             ("Evolve one generation", &["G"], Run(RunCommand::SingleGeneration)),
+            ("Continue the finished run", &[], Run(RunCommand::Extend)),
             ("Repeat the run from its start", &[], Run(RunCommand::Reset)),
+            ("Show the run hash", &[], Run(RunCommand::ShowHash)),
             (
                 "Show a generation's champion",
                 &["1", "2", "3", "4", "5", "6", "7", "8", "9"],
                 Stage(Show(Pick::Generation(1))),
             ),
-            ("Show the saved champion", &["0"], Stage(Show(Pick::Opened(0)))),
+            ("Show the built-in champion", &["0"], Stage(Show(Pick::Opened(0)))),
             ("Follow evolution", &["W"], Stage(ToggleFollowEvolution)),
             ("Story: first, middle and latest generation", &["S"], Stage(TellStory)),
             ("Whole latest generation", &["I"], Stage(ShowGeneration(None))),
             ("Race generations", &["N"], Stage(RaceGenerations)),
             ("Race best 10 of the latest generation", &["M"], Stage(RaceLeaders(None))),
+            ("Why does it climb? Take away one joint at a time", &[], Stage(RaceKnockOuts)),
             ("Race the snake over ten staircases", &[], Stage(RaceStairs)),
             ("Examine the snake on 100 unseen staircases", &[], Exam(ExamCommand::Examine)),
         ],

@@ -43,6 +43,8 @@ pub(crate) enum LibraryCommand {
         /// New notes; empty for none.
         text: String,
     },
+    /// Save the selected snake on the stage, in the world in which it is shown.
+    SaveSnake,
     /// Copy champions within the folder of saves.
     Duplicate(Vec<SavePlace>),
     /// Move entries to the trash folder, from where undo restores them.

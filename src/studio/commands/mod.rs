@@ -86,6 +86,8 @@ pub(super) enum RunCommand {
     Pause,
     /// Evolve to the end of the current generation.
     SingleGeneration,
+    /// Evolve the finished run further, by as many generations as it began with.
+    Extend,
     /// Start another run: with the settings of the next run or, if they are unchanged, with the next seed. The current
     /// run stays saved.
     New,
@@ -95,6 +97,8 @@ pub(super) enum RunCommand {
     Continue(PathBuf),
     /// Set the number of worker threads, from the next generation on.
     SetThreads(usize),
+    /// Show the hash of the finished run.
+    ShowHash,
     /// List all runs in the folder of saves.
     ListRuns,
     /// Add the run in this folder to the comparison chart, or remove it.
@@ -169,6 +173,8 @@ pub(super) enum StageCommand {
     Sweep(String),
     /// Show the snake on its own stairs and on the built-in ones, side by side.
     RaceStairs,
+    /// Show the snake beside copies that each lack the torque of one joint or for one kind of motion.
+    RaceKnockOuts,
     /// Accept the change of a what-if, and remove the lane without it.
     KeepChange,
     /// Keep the changed lane of a what-if. The next change then adds another lane beside it.

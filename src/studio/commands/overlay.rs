@@ -3,7 +3,7 @@
 use snakes_core::check::Invalid;
 
 /// An overlay that can be drawn over the scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Overlay {
     /// Contact points and forces.
     Contacts,

@@ -95,7 +95,7 @@ mod tests {
             WINDOW_IS_OPEN.store(true, Ordering::Relaxed);
             let evaluator = Arc::new(LocalPool::new(1).expect("threads"));
             let background =
-                BackgroundRun::start(source.clone(), evaluator, None).expect("a thread");
+                BackgroundRun::start(source.clone(), evaluator, [], None).expect("a thread");
             background.resume();
             while last < 3 {
                 if let Some(RunEvent::Generation(report)) = background.poll() {

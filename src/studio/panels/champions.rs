@@ -41,8 +41,8 @@ pub(super) struct ChampionsView<'v> {
     pub shown: &'v [ShownLane],
     /// Returns how many of the best snakes of a generation can race; `None` is the latest generation.
     pub leaders: &'v dyn Fn(Option<u32>) -> usize,
-    /// Whether the stage shows each better generation automatically.
-    pub follows: bool,
+    /// Whether the stage shows each better generation automatically; `None` if no better one can come.
+    pub follows: Option<bool>,
 }
 
 impl ChampionsView<'_> {
@@ -99,7 +99,7 @@ impl ChampionsPanel {
             }
         });
         ui.horizontal_wrapped(|ui| {
-            command_box(ui, view.follows, FOLLOW, FOLLOW_COMMAND, commands);
+            follow_box(ui, view.follows, commands);
             let name = "Better ones only";
             if view.has_better_only() {
                 let hint = "A run whose stairs evolve keeps only the snakes that beat those of all generations before";
@@ -184,11 +184,16 @@ impl ChampionsPanel {
     }
 }
 
-/// Label and tooltip of the check box for following evolution.
-pub(super) const FOLLOW: (&str, &str) =
-    ("Follow evolution", "Show each better generation as soon as it is found");
 /// Command of the check box for following evolution.
 pub(super) const FOLLOW_COMMAND: Command = Command::Stage(StageCommand::ToggleFollowEvolution);
+
+/// Draws the check box for following evolution, unless no better generation can come.
+pub(super) fn follow_box(ui: &mut egui::Ui, follows: Option<bool>, commands: &mut Vec<Command>) {
+    if let Some(is_on) = follows {
+        let words = ("Follow evolution", "Show each better generation as soon as it is found");
+        command_box(ui, is_on, words, FOLLOW_COMMAND, commands);
+    }
+}
 
 /// A row of the champions list.
 struct ChampionRow<'r> {

@@ -8,8 +8,7 @@ use egui_plot::{Line, PlotPoints};
 use crate::studio::commands::files::FileCommand;
 use crate::studio::commands::{Command, LessonCommand};
 use crate::studio::state::lessons::{
-    Asks, FITNESS_OF_THE_LANDED, Found, LESSON_ORDER, LESSONS, LessonScene, LessonView, Lessons,
-    Plays, Progress,
+    Asks, Found, LESSONS, LessonScene, LessonView, Lessons, Plays, Progress,
 };
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::{CommandButton, accent_button};
@@ -17,7 +16,8 @@ use crate::studio::ui::lane_dot::lane_dot;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, x_title, y_title};
 use crate::studio::ui::text_rows::{explain, title_text};
 use crate::studio::ui::theme;
-use snakes_core::score::{Evaluation, Fitness};
+use snakes_core::evolve::Champion;
+use snakes_core::score::{Evaluation, Fitness, Trial};
 use snakes_lab::plot::Axis;
 
 /// Draws the list of lessons or the lesson in progress, and collects the user's commands.
@@ -30,12 +30,11 @@ pub(super) fn lessons(ui: &mut egui::Ui, of: &Lessons, commands: &mut Vec<Comman
 
 fn list(ui: &mut egui::Ui, finished: &BTreeSet<String>, commands: &mut Vec<Command>) {
     explain(ui, "Two-minute experiments. Your own run is paused and comes back unchanged.");
-    for index in LESSON_ORDER {
-        let lesson = &LESSONS[index];
+    for (index, lesson) in LESSONS.iter().enumerate() {
         let palette = theme::of(ui);
         palette.card(palette.field_hovered).show(ui, |ui| {
             ui.set_width(ui.available_width());
-            ui.label(title_text(lesson.title));
+            ui.label(title_text(numbered(index)));
             ui.label(lesson.question);
             ui.horizontal(|ui| {
                 let name = format!("Begin lesson {}", index + 1);
@@ -51,10 +50,9 @@ fn list(ui: &mut egui::Ui, finished: &BTreeSet<String>, commands: &mut Vec<Comma
     }
 }
 
-/// Returns the index of the lesson after this one, in the order of the panel.
-fn next_lesson(index: usize) -> Option<usize> {
-    let mut order = LESSON_ORDER.into_iter().skip_while(|other| *other != index);
-    order.nth(1)
+/// Returns the title of a lesson after its number.
+fn numbered(index: usize) -> String {
+    format!("{}. {}", index + 1, LESSONS[index].title)
 }
 
 fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) {
@@ -64,19 +62,19 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
         let hint = "End the lesson and restore your run, its settings and the stage";
         let leave = Command::Lesson(LessonCommand::Leave);
         CommandButton::of(back, hint, leave).show(ui, commands);
-        if let Some(next) = next_lesson(view.index) {
-            let next = Command::Lesson(LessonCommand::Begin(next));
+        if view.index + 1 < LESSONS.len() {
+            let next = Command::Lesson(LessonCommand::Begin(view.index + 1));
             CommandButton::new("Next lesson", "", next).show(ui, commands);
         }
     });
-    ui.label(egui::RichText::new(lesson.title).size(theme::HEADING_SIZE).strong());
+    ui.label(egui::RichText::new(numbered(view.index)).size(theme::HEADING_SIZE).strong());
     ui.label(egui::RichText::new(lesson.question).italics());
     ui.label(lesson.story);
     heading(ui, "Try it");
     ui.label(lesson.to_try);
     for (index, scene) in lesson.scenes.iter().enumerate() {
         let is_shown = index == view.scene;
-        let button = egui::Button::new(scene.label()).selected(is_shown);
+        let button = egui::Button::new(scene.label).selected(is_shown);
         let button = button.min_size(egui::vec2(ui.available_width(), 0.0));
         let refusal = Some("The runs are still in progress").filter(|_| view.is_busy);
         let show = Command::Lesson(LessonCommand::ShowScene(index));
@@ -91,7 +89,7 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
     if view.shows_conclusion {
         ui.label(lesson.conclusion);
     } else {
-        let asked = lesson.scenes.iter().filter(|scene| scene.question().is_some()).count();
+        let asked = lesson.scenes.iter().filter(|scene| scene.question.is_some()).count();
         explain(
             ui,
             match asked {
@@ -113,7 +111,7 @@ fn prediction(
     commands: &mut Vec<Command>,
 ) {
     let progress = view.progress;
-    if let Some(question) = scene.question() {
+    if let Some(question) = &scene.question {
         let palette = theme::of(ui);
         ui.add_space(theme::GAP / 2.0);
         palette.card(palette.accent).show(ui, |ui| {
@@ -146,15 +144,20 @@ fn prediction(
     }
     if !progress.plays.finished().is_empty() {
         plays(ui, &progress.plays);
-    } else if progress.is_revealed && !progress.lanes.is_empty() {
-        lanes(ui, &progress.lanes);
-        match progress.fitness {
-            Some(Fitness::Climb) | None => explain(ui, FITNESS_OF_THE_LANDED),
-            Some(fitness) => explain(ui, &format!("Fitness: {}.", fitness.words())),
+    } else if let Some(trial) = progress.trial.as_ref().filter(|_| progress.is_revealed) {
+        lanes(ui, &progress.lanes, trial.fitness);
+        zero(ui, trial);
+        match trial.fitness {
+            Fitness::Climb => explain(
+                ui,
+                "Fitness is the distance on the stairs, until the whole snake is on the landing. Off the stairs, only the \
+                 way to the first step counts.",
+            ),
+            fitness => explain(ui, &format!("Fitness: {}.", fitness.words())),
         }
     }
     if !progress.runs.is_empty() {
-        let asks = scene.question().map(|question| question.asks);
+        let asks = scene.question.as_ref().map(|question| question.asks);
         runs(ui, progress, asks, view.is_busy);
     }
 }
@@ -180,10 +183,10 @@ fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene, commands: &mut Vec<Comm
 fn worksheet(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
     heading(ui, "Worksheet");
     ui.horizontal_wrapped(|ui| {
-        let hint = "Opens the worksheet in the browser, which prints it on one sheet of paper";
+        let hint = "Opens the worksheet in the browser, which prints it on one sheet of paper; a tick there shows the teacher's answers";
         let print = Command::File(FileCommand::PrintWorksheet(index));
         CommandButton::new("Print the worksheet", hint, print).show(ui, commands);
-        let hint = "Copy its text (Markdown), to paste it into a text processor";
+        let hint = "Copy its text (Markdown), with the teacher's answers at its end, to paste it into a text processor";
         let copied = Command::Notify(format!("Worksheet {} copied.", index + 1));
         if CommandButton::new("Copy worksheet", hint, copied).show(ui, commands) {
             ui.ctx().copy_text(LESSONS[index].worksheet.to_owned());
@@ -232,7 +235,7 @@ fn lane_name(ui: &mut egui::Ui, lane: usize, name: &str) {
 }
 
 /// Draws a table of the final results of all lanes.
-fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
+fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)], fitness: Fitness) {
     table(ui, "lanes", &["", "Ends at", "Fitness"], |ui| {
         for (lane, (name, evaluation)) in lanes.iter().enumerate() {
             match lanes {
@@ -247,7 +250,7 @@ fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
                 }
                 None => {
                     ui.label(format!("{:.2} m", evaluation.centre_y_m));
-                    ui.label(format!("{:.2}", evaluation.fitness));
+                    ui.label(fitness.brief(evaluation.fitness));
                 }
             }
             ui.end_row();
@@ -258,22 +261,24 @@ fn lanes(ui: &mut egui::Ui, lanes: &[(String, Evaluation)]) {
 /// Draws a chart of all runs and, when the results may be shown, a table of them.
 fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: bool) {
     let runs = &progress.runs;
-    let fitness = runs.iter().find_map(Found::best).map(|best| best.trial.fitness);
-    let unit = fitness.map_or("", Fitness::unit);
+    let trial = runs.iter().find_map(Found::best).map(|best| &best.trial);
+    // A share is shown in percent. The vertical axis has a minimum range: a metre, or a tenth of the way.
+    let (factor, unit, least) = match trial.map(|trial| trial.fitness) {
+        Some(Fitness::Share) => (100.0, "%", 10.0),
+        fitness => (1.0, fitness.map_or("", Fitness::unit).trim(), 1.0),
+    };
     let palette = theme::of(ui);
     let best = |found: &Found| -> Vec<[f64; 2]> {
         let known = found.reports.iter().filter_map(|report| {
-            Some([f64::from(report.generation), report.statistics.as_ref()?.best])
+            Some([f64::from(report.generation), factor * report.statistics.as_ref()?.best])
         });
         known.collect()
     };
     let lines: Vec<Vec<[f64; 2]>> = runs.iter().map(best).collect();
     let along = |of: usize| lines.iter().flatten().map(move |point| point[of]);
-    // Minimum range of the vertical axis: a metre for a distance, a tenth for a share.
-    let least = if unit.is_empty() { 0.1 } else { 1.0 };
     if along(0).next().is_some() {
         let x = Axis::around("Generation", "", along(0), 1.0);
-        let y = Axis::around("Best fitness of each generation", unit.trim(), along(1), least);
+        let y = Axis::around("Best fitness of each generation", unit, along(1), least);
         y_title(ui, &y.label());
         fixed_plot("lesson", theme::PLOT_HEIGHT, [&x, &y]).show(ui, |plot| {
             plot.set_plot_bounds(bounds(&x.range, &y.range));
@@ -302,8 +307,7 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: boo
     table(ui, "runs", &["", "Best", middle, "Run hash"], |ui| {
         for (lane, found) in runs.iter().enumerate() {
             lane_name(ui, lane, &found.name);
-            let best = found.best().map(|best| format!("{:.2}{unit}", best.evaluation.fitness));
-            ui.label(best.unwrap_or_else(|| "-".to_owned()));
+            ui.label(found.best().map_or_else(|| "-".to_owned(), Champion::brief));
             if of_bodies {
                 ui.label(found.late_body_changes().to_string()).on_hover_text(
                     "Generations of the second half whose best snake has another body than the best before it",
@@ -311,13 +315,23 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: boo
             } else {
                 let out: u32 = found.reports.iter().map(|report| report.disqualified).sum();
                 let all: u32 = found.reports.iter().map(|report| report.evaluations).sum();
-                ui.label(format!("{out} of {all}"))
-                    .on_hover_text("Disqualified snakes of all that were evaluated");
+                ui.label(format!("{out} of {all}")).on_hover_text(
+                    "Snakes that left the area, moved too fast or came apart, of all that were tried",
+                );
             }
             hash(ui, found.run_hash.unwrap_or_default());
             ui.end_row();
         }
     });
+    if let Some(trial) = trial.filter(|trial| trial.fitness.is_along_y()) {
+        zero(ui, trial);
+    }
+}
+
+/// Explains from where a table counts distances.
+fn zero(ui: &mut egui::Ui, trial: &Trial) {
+    let to_step_m = trial.stairs.first_riser_y_m;
+    explain(ui, &format!("0 m lies {to_step_m} m before the first step; snakes start behind it."));
 }
 
 fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut egui::Ui)) {

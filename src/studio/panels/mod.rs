@@ -58,7 +58,7 @@ use super::workspace::scale::UiScale;
 use snakes_lab::run::names::with_title;
 
 use body::BodyPanel;
-use champions::{ChampionsPanel, ChampionsView};
+use champions::{ChampionsPanel, ChampionsView, FOLLOW_COMMAND};
 use charts::{ChartsPanel, FitnessChart};
 use click_limits::{leave_keyboard_to_stage, set_click_limits};
 use help::command_palette::CommandPalette;
@@ -149,7 +149,7 @@ fn draw(
     }
     theme::show(&context, *data.theme);
     workspace.scale.fit(context.content_rect().size() * context.zoom_factor());
-    let is_presenting = workspace.is_presenting();
+    let is_presenting = workspace.is_presenting;
     let scale = match is_presenting {
         true => UiScale::presenting(context.content_rect().size() * context.zoom_factor()),
         false => workspace.scale.shown(),
@@ -187,6 +187,7 @@ fn draw(
     let is_on = |command: &Command| match command {
         Command::Window(WindowCommand::ToggleTorques) => Some(shows_torques),
         Command::Window(WindowCommand::Enlarge) => Some(is_larger),
+        &FOLLOW_COMMAND => on_stage.following.offered(&data.run),
         _ => on_stage.is_on(command, *data.theme),
     };
     let mut viewer = Viewer {
@@ -357,7 +358,7 @@ impl Viewer<'_, '_, '_> {
                     reports: run.reports(),
                     shown: &shown,
                     leaders: &|generation| run.leaders(generation).len(),
-                    follows: on_stage.following.follows_evolution(),
+                    follows: on_stage.following.offered(run),
                 };
                 panels.champions.ui(ui, &view, commands);
             }

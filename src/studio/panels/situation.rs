@@ -44,10 +44,8 @@ impl Situation {
             can_try_another: mode.can_try_another(),
             is_finished: run.status() == RunStatus::Finished,
             can_leave: way_back.can_leave(),
-            is_covered: workspace.modal().is_some()
-                || workspace.is_bare
-                || workspace.is_presenting(),
-            is_presenting: workspace.is_presenting() && workspace.modal().is_none(),
+            is_covered: workspace.modal().is_some() || workspace.is_bare || workspace.is_presenting,
+            is_presenting: workspace.is_presenting && workspace.modal().is_none(),
             is_sharing: shares.busy().is_some(),
             can_undo: history.next(UndoDirection::Back).is_some(),
             can_redo: history.next(UndoDirection::Forth).is_some(),

@@ -219,6 +219,14 @@ pub(crate) fn finish_y_m(stairs: &Stairs) -> f32 {
     stairs.landing_y_m() + BEHIND_EDGE_M
 }
 
+/// Returns the middle and half the size of a box around the last riser and the finish, in metres; `None` without stairs.
+pub(super) fn gate(stairs: &Stairs) -> Option<[Vec3; 2]> {
+    let last_m = stairs.height_m(stairs.steps.checked_sub(1)?);
+    let top_m = stairs.height_m(stairs.steps) + FINISH_M + BOARD_M;
+    let middle = Vec3::new(0.0, finish_y_m(stairs), (last_m + top_m) / 2.0);
+    Some([middle, Vec3::new(stairs.width_m / 2.0, BEHIND_EDGE_M, (top_m - last_m) / 2.0)])
+}
+
 /// Returns whether the landing is deep enough for a finish.
 fn has_finish(stairs: &Stairs) -> bool {
     let last = stairs.steps.saturating_sub(1);
@@ -244,6 +252,16 @@ mod tests {
                 assert!(!is_on_way, "{at}");
             }
         }
+    }
+
+    #[test]
+    fn the_gate_is_around_the_board_and_the_last_edge() {
+        let stairs = Stairs::default();
+        let [middle, half] = gate(&stairs).expect("stairs");
+        let [from, to] = [middle - half, middle + half];
+        let top_m = stairs.height_m(stairs.steps);
+        assert!(from.y <= stairs.landing_y_m() && from.z < top_m && to.z >= top_m + FINISH_M);
+        assert!(gate(&Stairs { steps: 0, ..stairs }).is_none(), "flat ground");
     }
 
     #[test]

@@ -14,11 +14,13 @@ pub mod meshes;
 mod mipmaps;
 pub mod name_tags;
 pub mod overlays;
+mod plain_sky;
 mod plants;
 pub mod props;
 pub mod quality;
 pub mod sky;
 pub mod snake;
+pub mod stage_view;
 pub mod stairs;
 pub mod step_edges;
 pub mod step_labels;
@@ -51,6 +53,7 @@ pub(super) fn plugin(app: &mut App) {
         quality::watch_frames,
         wireframe::plugin,
         name_tags::plugin,
+        plain_sky::plugin,
         confetti::plugin,
     ));
 }

@@ -1,10 +1,11 @@
-//! Labels in the picture: name tags with the distance above each of several snakes, and the label of the fitness line.
+//! Labels in the picture: name tags with the distance beside the head of each of several snakes, and the label of the fitness line.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
 use super::camera::StageCamera;
 use super::overlays::{Overlays, fitness_line_end};
+use super::stage_view::StageView;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::stage::lane::Lane;
 use crate::studio::ui::decimals::decimals;
@@ -26,8 +27,41 @@ fn within(tag: egui::Rect, stage: egui::Rect) -> egui::Rect {
     tag.translate(egui::vec2(aside, 0.0))
 }
 
-/// Height of a tag's anchor point above the centre of the head, in metres.
-const OVER_HEAD_M: f32 = 1.6;
+/// Distance of a tag from heads and from other tags, in points.
+const CLEAR: f32 = theme::GAP / 2.0;
+/// Sides of a head at which its tag can be, in the order in which they are tried: above, to the left, to the right, and below.
+const SIDES: [[f32; 2]; 4] = [[0.0, -1.0], [-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+
+/// Places tags beside their heads, so that no tag covers a head or another tag. Each tag has the area of its head and its own size, in
+/// points. A tag stays at its side of the last frame while that side is free; `sides` are indices of [`SIDES`].
+fn places(
+    tags: &[(egui::Rect, egui::Vec2)],
+    sides: &mut Vec<usize>,
+    stage: egui::Rect,
+) -> Vec<egui::Rect> {
+    let mut taken: Vec<egui::Rect> = tags.iter().map(|(head, _)| head.expand(CLEAR)).collect();
+    sides.resize(tags.len(), 0);
+    for ((head, size), last) in tags.iter().zip(sides) {
+        let at = |side: usize| {
+            let away = (head.size() + *size) / 2.0 + egui::Vec2::splat(CLEAR * 1.5);
+            let middle = head.center() + away * egui::Vec2::from(SIDES[side]);
+            within(egui::Rect::from_center_size(middle, *size), stage)
+        };
+        let is_free = |side: &usize| {
+            let is_in_sight = stage.contains_rect(at(*side)) || !stage.intersects(*head);
+            is_in_sight && !taken.iter().any(|other| other.intersects(at(*side)))
+        };
+        let free = std::iter::once(*last).chain(0..SIDES.len()).find(is_free);
+        *last = free.unwrap_or(0);
+        let mut place = at(*last);
+        // Between many heads, a tag goes up until it is above all that it would cover.
+        while let Some(other) = taken.iter().find(|other| other.intersects(place)) {
+            place = place.translate(egui::vec2(0.0, other.top() - place.bottom() - 1.0));
+        }
+        taken.push(place.expand(CLEAR / 2.0));
+    }
+    taken[tags.len()..].iter().map(|place| place.shrink(CLEAR / 2.0)).collect()
+}
 
 fn draw(
     mut contexts: EguiContexts,
@@ -35,6 +69,7 @@ fn draw(
     camera: Single<(&Camera, &Transform), With<StageCamera>>,
     overlays: Res<Overlays>,
     area: Res<StageArea>,
+    mut sides: Local<Vec<usize>>,
 ) -> Result {
     let shows_line = overlays.shows(Overlay::FitnessLine);
     let racing = || lanes.iter().filter(|lane| !lane.is_ghost);
@@ -43,41 +78,29 @@ fn draw(
         return Ok(());
     }
     let context = contexts.ctx_mut()?;
-    let (camera, place) = *camera;
-    let place = GlobalTransform::from(*place);
-    let mut tags: Vec<(egui::Pos2, String)> = racing()
-        .filter_map(|lane| {
-            let y_m = lane.drawn_middle().y;
-            let (above, text) = if are_many {
-                let head = lane.drawn_poses().next()?.translation + lane.offset();
-                (
-                    head + Vec3::Z * OVER_HEAD_M,
-                    format!("{}  {} m", lane.staged.label(), decimals(y_m, 1)),
-                )
-            } else {
-                (fitness_line_end(lane), format!("middle block at {} m", decimals(y_m, 2)))
-            };
-            let at = camera.world_to_viewport(&place, above).ok()?;
-            Some((area.point_of(at), text))
-        })
-        .collect();
-    tags.sort_by(|a, b| b.0.y.total_cmp(&a.0.y));
+    let view = StageView::new(camera.0, camera.1, context);
     let stage = area.rect();
     let layer = egui::LayerId::new(egui::Order::Background, egui::Id::new("name tags"));
     let painter = context.layer_painter(layer).with_clip_rect(stage);
     let palette = theme::of_context(context);
     let font = egui::FontId::proportional(theme::TAG_SIZE);
-    let mut placed: Vec<egui::Rect> = Vec::new();
-    for (at, text) in tags {
-        let galley = painter.layout_no_wrap(text, font.clone(), palette.text);
-        let size = galley.size() + egui::vec2(theme::GAP * 1.5, theme::GAP * 0.75);
-        let over = egui::Rect::from_center_size(at - egui::vec2(0.0, size.y / 2.0), size);
-        let mut rect = within(over, stage);
-        // Moves a tag up while it would cover another.
-        while let Some(other) = placed.iter().find(|other| other.intersects(rect)) {
-            rect = rect.translate(egui::vec2(0.0, other.top() - rect.bottom() - 2.0));
-        }
-        placed.push(rect);
+    let margin = egui::vec2(theme::GAP * 1.5, theme::GAP * 0.75);
+    let (tags, texts): (Vec<_>, Vec<_>) = racing()
+        .filter_map(|lane| {
+            let y_m = lane.drawn_middle().y;
+            let (head, text) = if are_many {
+                let name = lane.staged.label();
+                (view.limb(lane, 0)?, format!("{name}  {} m", decimals(y_m, 1)))
+            } else {
+                let at = view.point_of(fitness_line_end(lane))?;
+                let text = format!("middle block at {} m", decimals(y_m, 2));
+                (egui::Rect::from_pos(at), text)
+            };
+            let text = painter.layout_no_wrap(text, font.clone(), palette.text);
+            Some(((head, text.size() + margin), text))
+        })
+        .unzip();
+    for (rect, text) in places(&tags, &mut sides, stage).into_iter().zip(texts) {
         painter.rect(
             rect,
             rect.height() / 2.0,
@@ -85,8 +108,7 @@ fn draw(
             egui::Stroke::new(1.0, palette.field_hovered),
             egui::StrokeKind::Inside,
         );
-        let inside = rect.center() - galley.size() / 2.0;
-        painter.galley(inside, galley, palette.text);
+        painter.galley(rect.center() - text.size() / 2.0, text, palette.text);
     }
     Ok(())
 }
@@ -96,15 +118,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tag_at_the_edge_of_the_stage_is_not_cut() {
-        let stage = egui::Rect::from_min_max(egui::pos2(100.0, 0.0), egui::pos2(900.0, 500.0));
-        let tag =
-            |x: f32| egui::Rect::from_center_size(egui::pos2(x, 50.0), egui::vec2(140.0, 20.0));
-        for x in [105.0, 480.0, 890.0] {
-            let shown = within(tag(x), stage);
-            assert!(shown.left() >= stage.left() && shown.right() <= stage.right(), "{shown}");
+    fn a_tag_covers_no_head_and_no_other_tag_and_keeps_its_side() {
+        let stage = egui::Rect::from_min_max(egui::pos2(385.0, 29.0), egui::pos2(1280.0, 613.0));
+        let size = egui::vec2(150.0, 22.0);
+        let tags_of = |across: f32, up: f32| -> Vec<(egui::Rect, egui::Vec2)> {
+            let at =
+                |lane: usize| egui::pos2(600.0 + across * lane as f32, 400.0 - up * lane as f32);
+            let head = |lane| egui::Rect::from_center_size(at(lane), egui::vec2(34.0, 30.0));
+            (0..5).map(|lane| (head(lane), size)).collect()
+        };
+        for (across, up) in [(100.0, 40.0), (60.0, 5.0), (20.0, 45.0), (36.0, 32.0), (-50.0, 0.0)] {
+            let (tags, mut sides) = (tags_of(across, up), Vec::new());
+            let placed = places(&tags, &mut sides, stage);
+            for (index, tag) in placed.iter().enumerate() {
+                assert!(stage.contains_rect(*tag), "{tag}");
+                assert!(tags.iter().all(|(head, _)| !head.expand(3.0).intersects(*tag)), "{tag}");
+                assert!(placed[..index].iter().all(|other| !other.intersects(*tag)), "{tag}");
+            }
+            assert_eq!(places(&tags, &mut sides, stage), placed, "the next frame");
         }
-        assert_eq!(within(tag(480.0), stage), tag(480.0));
-        assert_eq!(within(tag(2000.0), stage), tag(2000.0), "out of sight");
+        let alone = |x: f32, mut sides: Vec<usize>| {
+            let head = egui::Rect::from_center_size(egui::pos2(x, 300.0), egui::vec2(34.0, 30.0));
+            (head, places(&[(head, size)], &mut sides, stage)[0])
+        };
+        for x in [390.0, 800.0, 1275.0] {
+            let (head, tag) = alone(x, Vec::new());
+            assert!(stage.contains_rect(tag) && tag.bottom() < head.top(), "{tag}");
+        }
+        let (head, tag) = alone(800.0, vec![1]);
+        assert!(tag.right() < head.left(), "it stays at the left");
+        assert_eq!(alone(2000.0, Vec::new()).1.center().x, 2000.0, "out of sight");
     }
 }

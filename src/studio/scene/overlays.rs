@@ -1,5 +1,7 @@
 //! Overlays of the scene: forces, torques, trail, fitness line.
 
+use std::collections::BTreeSet;
+
 use bevy::prelude::*;
 
 use super::props::in_scene;
@@ -11,7 +13,7 @@ use crate::studio::ui::theme::{Palette, Theme};
 
 /// Overlays that are visible.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct Overlays(Vec<Overlay>);
+pub(crate) struct Overlays(BTreeSet<Overlay>);
 
 /// Gizmo group of lines that are drawn in front of everything.
 #[derive(Default, Reflect, GizmoConfigGroup)]
@@ -30,17 +32,13 @@ impl Overlays {
 
     /// Shows an overlay.
     pub fn show(&mut self, overlay: Overlay) {
-        if !self.shows(overlay) {
-            self.0.push(overlay);
-        }
+        self.0.insert(overlay);
     }
 
     /// Shows or hides an overlay.
     pub fn toggle(&mut self, overlay: Overlay) {
-        if self.shows(overlay) {
-            self.0.retain(|shown| *shown != overlay);
-        } else {
-            self.0.push(overlay);
+        if !self.0.remove(&overlay) {
+            self.0.insert(overlay);
         }
     }
 }

@@ -195,8 +195,8 @@ pub(super) fn piece(
 fn shaded_cube() -> Mesh {
     let mesh = Cuboid::from_length(1.0).mesh().build();
     let normals = mesh.attribute(Mesh::ATTRIBUTE_NORMAL).and_then(VertexAttributeValues::as_float3);
-    let shade = |&[x, y, _]: &[f32; 3]| {
-        let brightness = 0.75 + 0.25 * y - 0.1 * x.abs();
+    let shade = |&[x, _, z]: &[f32; 3]| {
+        let brightness = 0.85 + 0.15 * z - 0.1 * x.abs();
         [brightness, brightness, brightness, 1.0]
     };
     let colors: Vec<[f32; 4]> = normals.unwrap_or_default().iter().map(shade).collect();
@@ -206,4 +206,24 @@ fn shaded_cube() -> Mesh {
 /// Returns the transform that scales the unit cube to a box.
 pub(crate) fn box_transform(centre: Vec3, size: Vec3) -> Transform {
     Transform::from_translation(centre).with_scale(size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_faces_of_a_ghosts_cube_are_brighter_the_more_they_face_upwards() {
+        let cube = shaded_cube();
+        let normals = cube.attribute(Mesh::ATTRIBUTE_NORMAL).and_then(|of| of.as_float3());
+        let Some(VertexAttributeValues::Float32x4(colors)) = cube.attribute(Mesh::ATTRIBUTE_COLOR)
+        else {
+            panic!("four numbers per vertex");
+        };
+        let of_face = |z: f32| {
+            let at = normals.expect("normals").iter().position(|normal| normal[2] == z);
+            colors[at.expect("a face")][0]
+        };
+        assert!(of_face(1.0) > of_face(0.0) && of_face(0.0) > of_face(-1.0));
+    }
 }

@@ -112,9 +112,11 @@ impl Playback {
         }
     }
 
-    /// Returns to the time and the settings of an earlier clock.
+    /// Returns to the time of an earlier clock, whether it was playing, and whether it repeated. The speed stays, because the user may
+    /// have set it since then.
     pub fn restore(&mut self, earlier: &Self) {
-        *self = Self { is_sought: true, commands: self.commands, ..earlier.clone() };
+        let Self { speed, commands, .. } = *self;
+        *self = Self { is_sought: true, speed, commands, ..earlier.clone() };
     }
 
     /// Sets the playback speed, clamped to the allowed range.

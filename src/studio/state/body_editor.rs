@@ -179,14 +179,14 @@ impl Edited {
             Ok(Some(tuned)) => {
                 let unit = self.original.trial().fitness.unit();
                 let [before, after] = [tuned.before.fitness, tuned.evaluation.fitness];
-                let text = format!("Tuning: fitness {before:.2}{unit} became {after:.2}{unit}.");
+                let text = format!("Adapted: fitness {before:.2}{unit} became {after:.2}{unit}.");
                 notices.update(SUBJECT, text);
                 if tuned.genome != self.genome {
                     self.replace(tuned.genome);
                 }
             }
             Ok(None) => notices.problem("This body cannot be simulated.".to_owned()),
-            Err(problem) => notices.problem(format!("Tuning ended with an error: {problem}")),
+            Err(problem) => notices.problem(format!("The gait could not be adapted: {problem}")),
         }
     }
 
@@ -318,7 +318,8 @@ impl Edited {
         let task = BackgroundTask::start_counted(TUNING, move |control| {
             tune_controller(&genome, &trial, size, control)
         });
-        self.tuning = Some(task.map_err(|error| format!("Tuning could not start: {error}."))?);
+        self.tuning =
+            Some(task.map_err(|error| format!("The gait could not be adapted: {error}."))?);
         Ok(())
     }
 }

@@ -136,6 +136,11 @@ impl CurrentRun {
         self.plan_now.generations_in_words(self.reports.len() as u32, self.run_hash.is_some())
     }
 
+    /// Returns the hash of a finished run, as it is printed in the terminal: "Run hash 00c0ffee00c0ffee".
+    pub fn hash_in_words(&self) -> Option<String> {
+        self.run_hash.map(|hash| format!("Run hash {hash:016x}"))
+    }
+
     /// Returns the number of the run since the start of the program; the first is 0.
     pub fn number(&self) -> u32 {
         self.number
@@ -151,10 +156,14 @@ impl CurrentRun {
         &self.plan_now.settings
     }
 
-    /// Returns the stopped runs that can be resumed, each with its readable name; `None` until the runs are listed.
+    /// Returns the other runs of the saves folder, each with its readable name; `None` until the runs are listed.
+    pub fn listed(&self) -> Option<impl Iterator<Item = &ListedRun>> {
+        Some(self.others.runs.as_ref()?.iter().filter(|of| of.run.folder != self.source.folder))
+    }
+
+    /// Returns those of the other runs that were stopped and can be resumed; `None` until the runs are listed.
     pub fn stopped(&self) -> Option<impl Iterator<Item = &ListedRun>> {
-        let is_other = |of: &&ListedRun| of.run.is_stopped() && of.run.folder != self.source.folder;
-        Some(self.others.runs.as_ref()?.iter().filter(is_other))
+        Some(self.listed()?.filter(|of| of.run.is_stopped()))
     }
 
     /// Returns the reports of the finished generations, the first generation first.
@@ -301,8 +310,8 @@ impl CurrentRun {
         self.start()
     }
 
-    /// Opens a run that was stopped earlier, paused, instead of the run with which the studio opened.
-    pub fn open_stopped(&mut self, folder: &Path) -> Result<(), String> {
+    /// Opens an earlier run, paused or finished, instead of the run with which the studio opened.
+    pub fn open_earlier(&mut self, folder: &Path) -> Result<(), String> {
         let number = self.number;
         self.replace_by(folder)?;
         self.number = number;
@@ -349,7 +358,8 @@ impl CurrentRun {
                 let source = self.source.clone();
                 let evaluator = self.evaluator();
                 self.context.set_run_folder(Some(source.folder.clone()));
-                BackgroundRun::start(source, evaluator, self.before.take())
+                // Changes that were requested of a thread that has ended are requested again.
+                BackgroundRun::start(source, evaluator, self.pending.clone(), self.before.take())
                     .map_err(|error| format!("Evolution could not be started: {error}"))?
             }
         };

@@ -112,7 +112,7 @@ impl Files {
                 self.unasked = Some((question.clone(), OPEN_ALREADY.to_owned()));
             }
             FileCommand::Ask(question) => self.wanted = Some(question.clone()),
-            FileCommand::AskExport => library.request_export(),
+            FileCommand::AskExport => library.export_requests += 1,
             FileCommand::Answer(question, paths) => {
                 let request = request(question, paths);
                 let done = request.map(|request| library.apply(&request, history, notices));
@@ -121,14 +121,14 @@ impl Files {
             }
             FileCommand::OpenFolder(folder) => self.open(folder)?,
             FileCommand::PrintWorksheet(lesson) => {
-                let path = write_worksheet(library.saves(), *lesson)?;
+                let path = write_worksheet(&library.saves, *lesson)?;
                 let text = format!("{} opens in the browser, which prints it.", path.display());
                 offer_path(notices, "worksheet", text, &path);
                 self.open(&path)?;
             }
             FileCommand::ShowSaves => {
-                library.prepare_folder()?;
-                self.open(library.folder())?;
+                library.saves.prepare().map_err(|error| error.to_string())?;
+                self.open(library.saves.path())?;
             }
             FileCommand::CopyPicture(path) => self.copying.start(Copied::Picture(path.clone()))?,
             FileCommand::CopyPath(path) => self.copying.start(Copied::Path(path.clone()))?,

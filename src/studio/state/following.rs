@@ -69,6 +69,12 @@ impl Following {
         self.plan == FollowPlan::Evolution
     }
 
+    /// Returns whether better generations are shown automatically, for a check box; `None` after the end of the run, which finds no better
+    /// ones.
+    pub fn offered(&self, run: &CurrentRun) -> Option<bool> {
+        (run.status() != RunStatus::Finished).then(|| self.follows_evolution())
+    }
+
     /// Returns the number of the story's part on the stage, from 1, and the number of parts; `None` without a story.
     pub fn story_part(&self) -> Option<(usize, usize)> {
         let FollowPlan::Story { generations, next } = &self.plan else { return None };
@@ -279,6 +285,18 @@ mod tests {
         assert!(following.follows_evolution(), "nobody ended it");
         let last = run.milestones.last().map(|last| last.generation);
         assert_eq!(following.shown, last, "the best of all");
+    }
+
+    #[test]
+    fn following_evolution_is_offered_until_the_run_is_finished() {
+        let (mut run, mut following) = (explored_run(), Following::from_start());
+        assert_eq!(following.offered(&run), Some(true));
+        following.stop();
+        assert_eq!(following.offered(&run), Some(false));
+        run.run_hash = Some(1);
+        following.follow_evolution();
+        assert_eq!(following.offered(&run), None);
+        assert!(following.due(&run, true).is_some(), "the best one still comes onto the stage");
     }
 
     #[test]

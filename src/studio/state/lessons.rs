@@ -26,8 +26,9 @@ use snakes_core::evolve::RunPlan;
 use snakes_lab::run::{ParallelRuns, ParallelRunsEvent};
 
 use catalogue::{champions, plan};
+use lesson::Shows;
 
-pub(crate) use catalogue::{FITNESS_OF_THE_LANDED, LESSON_ORDER, LESSONS};
+pub(crate) use catalogue::{LESSONS, present_title};
 pub(crate) use found::Found;
 pub(crate) use lesson::LessonScene;
 pub(crate) use plays::Plays;
@@ -38,7 +39,7 @@ pub(crate) use printed::write_worksheet;
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Lessons {
     current: Option<Current>,
-    /// Titles of the lessons whose conclusion was reached.
+    /// Present titles of the lessons whose conclusion was reached.
     pub finished: BTreeSet<String>,
 }
 
@@ -93,7 +94,7 @@ impl Lessons {
         let current = self.current.as_ref()?;
         // A scene with the snake alone has no question and is no experiment.
         let scenes = LESSONS[current.index].scenes.iter().zip(&current.progress);
-        let mut experiments = scenes.filter(|(scene, _)| scene.question().is_some());
+        let mut experiments = scenes.filter(|(scene, _)| scene.question.is_some());
         let are_revealed = experiments.all(|(_, of)| of.is_revealed);
         Some(LessonView {
             index: current.index,
@@ -108,7 +109,7 @@ impl Lessons {
     /// experiment has not been watched to its end.
     pub fn hides_result(&self) -> bool {
         self.current.as_ref().is_some_and(|current| {
-            current.scene().question().is_some() && !current.progress().is_revealed
+            current.scene().question.is_some() && !current.progress().is_revealed
         })
     }
 
@@ -200,9 +201,9 @@ impl Lessons {
     fn reveal(&mut self) {
         if let Some(current) = &mut self.current
             && current.under_way.is_none()
-            && let question = current.scene().question()
+            && let question = &current.scene().question
             && let progress = &mut current.progress[current.scene]
-            && question.is_none_or(|question| progress.knows_result(question))
+            && question.as_ref().is_none_or(|question| progress.knows_result(question))
         {
             progress.is_revealed = true;
         }
@@ -227,10 +228,10 @@ impl Lessons {
         let Some(scene) = LESSONS[current.index].scenes.get(number) else { return Ok(None) };
         (current.scene, current.under_way) = (number, None);
         let progress = &mut current.progress[number];
-        match scene {
-            LessonScene::Lanes { lanes, champion, .. } => {
-                let champions = champions(champion, lanes)?;
-                progress.fitness = champions.first().map(|staged| staged.trial().fitness);
+        match scene.shows {
+            Shows::Champion(champion) => {
+                let champions = champions(champion, scene.sides)?;
+                progress.trial = champions.first().map(|staged| staged.trial().clone());
                 if progress.lanes.is_empty() {
                     progress.lanes = champions
                         .iter()
@@ -240,12 +241,12 @@ impl Lessons {
                 Ok(Some(Show::race(champions)))
             }
             // Runs that are finished are not repeated.
-            LessonScene::Runs { .. } if progress.is_revealed => Ok(progress.race()),
-            LessonScene::Runs { .. } if !progress.has_begun => Ok(None),
-            LessonScene::Runs { preset, runs, .. } => {
-                let plans = runs.iter().map(|side| plan(preset, side));
+            Shows::RunsOf(_) if progress.is_revealed => Ok(progress.race()),
+            Shows::RunsOf(_) if !progress.has_begun => Ok(None),
+            Shows::RunsOf(preset) => {
+                let plans = scene.sides.iter().map(|side| plan(preset, side));
                 let plans = plans.collect::<Result<Vec<_>, _>>()?;
-                progress.runs = runs.iter().map(|side| Found::of(side.name)).collect();
+                progress.runs = scene.sides.iter().map(|side| Found::of(side.name)).collect();
                 let started = ParallelRuns::start(plans);
                 current.under_way = Some(
                     started.map_err(|error| format!("The runs could not be started: {error}"))?,
@@ -287,8 +288,8 @@ impl Lessons {
     /// Records the state of the playback, if the question of the selected scene is about playbacks.
     fn follow_playback(&mut self, playback: &Playback, lanes: &[&Lane]) {
         let Some(current) = &mut self.current else { return };
-        let question = current.scene().question();
-        if question.is_some_and(|question| question.asks == Asks::PlaybackSpeed) {
+        let question = &current.scene().question;
+        if question.as_ref().is_some_and(|question| question.asks == Asks::PlaybackSpeed) {
             current.progress[current.scene].plays.follow_stage(playback, lanes);
         }
     }

@@ -31,22 +31,24 @@ pub(crate) use load::founder_of;
 /// Entries of the saves folder, and the operations that are in progress or can be undone.
 #[derive(Resource, Debug)]
 pub(crate) struct Library {
-    saves: SavesFolder,
+    /// Saves folder, in which files can be stored.
+    pub saves: SavesFolder,
     /// Thread that reads the saves folder; `None` until the library is first opened.
     reader: Option<LibraryReader>,
     /// Entries of the saves folder, sorted by place.
-    items: Vec<LibraryItem>,
-    is_listed: bool,
+    pub items: Vec<LibraryItem>,
+    /// Whether the entries have been listed.
+    pub is_listed: bool,
     /// Number of entries that have not been read yet.
-    unread: usize,
+    pub unread: usize,
     /// Reason why the saves folder cannot be read, if there is one.
-    problem: Option<String>,
+    pub problem: Option<String>,
     /// Counter that every visible change increments.
-    revision: u64,
+    pub revision: u64,
     /// Counter that is incremented when entries are added or removed.
-    listings: u64,
+    pub listings: u64,
     /// Counter that is incremented when a sort or search key changes.
-    sortings: u64,
+    pub sortings: u64,
     /// Whether runs may read alike until they are told apart.
     has_new_names: bool,
     batches: Vec<BatchJobs>,
@@ -56,15 +58,15 @@ pub(crate) struct Library {
     /// Result of `loading`, until it is shown on the stage.
     loaded: Option<Result<Show, String>>,
     /// Counter of entries to highlight, and the latest of them.
-    newest: (u64, Option<SavePlace>),
+    pub newest: (u64, Option<SavePlace>),
     /// Folder of the run in progress, if any.
     current: Option<PathBuf>,
     /// Whether files are being dragged over the window.
-    is_drop_near: bool,
+    pub is_drop_near: bool,
     /// Counter of questions that the panel asks because no dialog can be shown, and the latest question with the reason.
-    unanswered: (u64, Option<(FileQuestion, String)>),
+    pub unanswered: (u64, Option<(FileQuestion, String)>),
     /// Number of requests so far to export the selected entries.
-    export_requests: u64,
+    pub export_requests: u64,
 }
 
 impl FromWorld for Library {
@@ -104,45 +106,10 @@ impl Library {
         self.reader.is_some() || self.is_listed
     }
 
-    /// Returns whether the entries have been listed.
-    pub fn is_listed(&self) -> bool {
-        self.is_listed
-    }
-
-    /// Returns the entries of the library, sorted by place.
-    pub fn items(&self) -> &[LibraryItem] {
-        &self.items
-    }
-
     /// Returns the entry at a place, if there is one.
     pub fn item(&self, place: &SavePlace) -> Option<&LibraryItem> {
         let found = self.items.binary_search_by(|item| item.place().cmp(place));
         found.ok().map(|index| &self.items[index])
-    }
-
-    /// Returns the number of entries that have not been read yet.
-    pub fn unread(&self) -> usize {
-        self.unread
-    }
-
-    /// Returns the reason why the saves folder cannot be read, if there is one.
-    pub fn problem(&self) -> Option<&str> {
-        self.problem.as_deref()
-    }
-
-    /// Returns a counter that every visible change increments.
-    pub fn revision(&self) -> u64 {
-        self.revision
-    }
-
-    /// Returns a counter that is incremented when entries are added or removed, which invalidates indices.
-    pub fn listings(&self) -> u64 {
-        self.listings
-    }
-
-    /// Returns a counter that is incremented when a sort or search key changes.
-    pub fn sortings(&self) -> u64 {
-        self.sortings
     }
 
     /// Returns the generation of a run's best saved champion, if the run has been read.
@@ -163,57 +130,14 @@ impl Library {
         self.item(place)?.own_name().map(str::to_owned)
     }
 
-    /// Returns a counter of created, renamed and restored entries, and the latest of them.
-    pub fn newest(&self) -> (u64, Option<&SavePlace>) {
-        (self.newest.0, self.newest.1.as_ref())
-    }
-
     /// Returns whether the place is the folder of the run in progress.
     pub fn is_current(&self, place: &SavePlace) -> bool {
         self.current.is_some() && place.run() == self.current.as_deref()
     }
 
-    /// Returns whether files are being dragged over the window.
-    pub fn is_drop_near(&self) -> bool {
-        self.is_drop_near
-    }
-
     /// Makes the panel ask for a path, because no dialog can be shown for `reason`.
     pub fn ask_in_panel(&mut self, question: FileQuestion, reason: String) {
         self.unanswered = (self.unanswered.0 + 1, Some((question, reason)));
-    }
-
-    /// Returns a counter of questions that the panel asks, and the latest question with the reason.
-    pub fn unanswered(&self) -> (u64, Option<&(FileQuestion, String)>) {
-        (self.unanswered.0, self.unanswered.1.as_ref())
-    }
-
-    /// Requests the panel to export the selected entries.
-    pub fn request_export(&mut self) {
-        self.export_requests += 1;
-    }
-
-    /// Returns how often the export of the selected entries was requested.
-    pub fn export_requests(&self) -> u64 {
-        self.export_requests
-    }
-
-    /// Returns the saves folder, in which files can be stored.
-    pub fn saves(&self) -> &SavesFolder {
-        &self.saves
-    }
-
-    /// Creates the saves folder, if it does not exist yet.
-    ///
-    /// # Errors
-    /// The folder cannot be created.
-    pub fn prepare_folder(&self) -> Result<(), String> {
-        self.saves.prepare().map_err(|error| error.to_string())
-    }
-
-    /// Returns the saves folder.
-    pub fn folder(&self) -> &Path {
-        self.saves.path()
     }
 
     /// Returns the progress of the exam in words, and its finished share from 0 to 1, if an exam is in progress.

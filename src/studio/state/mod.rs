@@ -5,6 +5,8 @@ pub mod chart_export;
 pub mod current_run;
 pub mod files;
 pub mod following;
+pub mod knock_outs;
+mod latest_run;
 pub mod lessons;
 pub mod library;
 pub mod lineup;
@@ -17,7 +19,6 @@ pub mod run_context;
 pub mod shares;
 pub mod stairs_exams;
 pub mod stairs_race;
-mod stopped_run;
 pub mod sweep;
 pub mod turns;
 pub mod undo;
@@ -33,7 +34,7 @@ pub(super) fn plugin(app: &mut App) {
         undo::plugin,
         current_run::events::plugin,
         following::plugin,
-        stopped_run::plugin,
+        latest_run::plugin,
         library::poll::plugin,
         files::plugin,
         lessons::plugin,

@@ -16,7 +16,7 @@ use snakes_lab::run::{Evaluator, RunSource};
 pub struct Options {
     /// Run with which the studio opens.
     pub run: RunSource,
-    /// Whether to offer to resume the run that was stopped last. It is not offered if the user named a run.
+    /// Whether to open the latest run, stopped or finished, or to offer it. This is not done if the user named a run.
     pub offers_stopped_run: bool,
     /// Evaluator of the genomes of runs.
     pub evaluator: Arc<dyn Evaluator>,

@@ -16,7 +16,7 @@ pub(crate) struct RunContext {
     pub saves: SavesFolder,
     /// Run with which the studio opens.
     pub first: RunSource,
-    /// Whether to offer to resume the run that was stopped last.
+    /// Whether to open the latest run, stopped or finished, or to offer it.
     pub offers_stopped_run: bool,
     /// Presets that the user can choose.
     pub presets: Arc<KnownFiles<Preset>>,

@@ -228,13 +228,13 @@ fn arguments(format: ExportFormat, path: &Path, look: &ShareLook) -> Vec<OsStrin
 
 /// Converts the champion of a lane for a file. Returns the work that gives its name and the champion, with its result in the
 /// world in which it is shown. Fails with a reason if no file can represent it.
-fn shared(
+pub(super) fn shared(
     staged: &StagedChampion,
 ) -> Result<impl FnOnce() -> (String, Champion) + Send + use<>, String> {
     let name = staged.label().to_owned();
     if let Some(engine) = staged.other_engine().filter(|_| staged.recording().is_some()) {
         return Err(format!(
-            "{name} was recorded by engine {engine}; \"Simulate again\" makes it move by this one, and then it can be shared."
+            "{name} was recorded by engine {engine}; \"Simulate again\" makes it move by this one, and then it can be shared or saved."
         ));
     }
     if staged.changes_at_step().is_some() {

@@ -158,11 +158,9 @@ pub(crate) fn result_in_words(grids: &[StairsGrid]) -> String {
     };
     let (landed, trials) = count(ExamSuite::Stairs).unwrap_or_default();
     match count(ExamSuite::Lesion) {
-        None => format!("it lands on {landed} of {trials} staircases."),
+        None => format!("it climbs {landed} of {trials} staircases."),
         Some((without, _)) => {
-            format!(
-                "it lands on {landed} of {trials} staircases; without its senses, on {without}."
-            )
+            format!("it climbs {landed} of {trials} staircases; without its senses, {without}.")
         }
     }
 }
@@ -171,8 +169,8 @@ pub(crate) fn result_in_words(grids: &[StairsGrid]) -> String {
 pub(crate) fn end_in_words(end: &ExamEnd) -> String {
     match (end.landed_s, end.steps) {
         _ if end.is_disqualified => "is disqualified".to_owned(),
-        (Some(landed_s), _) if end.has_landed => format!("lands after {landed_s:.1} s"),
-        (Some(landed_s), _) => format!("lands after {landed_s:.1} s, but does not stay"),
+        (Some(landed_s), _) if end.has_landed => format!("reaches the top after {landed_s:.1} s"),
+        (Some(landed_s), _) => format!("reaches the top after {landed_s:.1} s, but does not stay"),
         (None, 0) => "climbs no step".to_owned(),
         (None, steps) => format!("ends on step {steps}"),
     }

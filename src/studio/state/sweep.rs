@@ -11,7 +11,8 @@ const VALUES: u8 = 5;
 /// Ratios of a sweep's values to the present value, for a setting with a logarithmic slider.
 const RATIOS: [f32; VALUES as usize] = [0.2, 0.5, 1.0, 2.0, 5.0];
 
-/// Shows the champion in five worlds that differ in one setting, which is named by its full dotted name.
+/// Shows the champion in five worlds that differ in one setting, which is named by its full dotted name. The label "(as before)" marks the
+/// world in which the stage shows the champion; the next run may have another value.
 ///
 /// # Errors
 /// The setting is no number of the world, has a separate value for each part, or has only one possible value. The error
@@ -37,11 +38,14 @@ pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, Stri
     };
     let world = |value: f32| -> Option<StagedChampion> {
         let trial = with_fields_and_engine(&settings, &[(field, &value.to_string())]).ok()?.trial;
-        let words = world_in_words(champion.trial(), &trial);
-        let staged = if trial == *champion.trial() {
+        let words = if trial == *champion.trial() {
             let value = listed.setting.value_in_words(&listed.value);
-            let name = listed.setting.short_name();
-            champion.simulated().named(format!("{name} {value} (now)"))
+            format!("{} {value} (as before)", listed.setting.short_name())
+        } else {
+            world_in_words(champion.trial(), &trial)
+        };
+        let staged = if trial == champion.champion().trial {
+            champion.as_found().simulated().named(words)
         } else {
             champion.in_world(&trial, words)
         };
@@ -111,7 +115,7 @@ mod tests {
         let labels: Vec<&str> = show.champions.iter().map(StagedChampion::label).collect();
         assert_eq!(
             labels,
-            ["friction 0.2", "friction 0.5", "friction 1 (now)", "friction 2", "friction 5"]
+            ["friction 0.2", "friction 0.5", "friction 1 (as before)", "friction 2", "friction 5"]
         );
         assert_eq!(show.mode, StageMode::Race);
         let changed = &show.champions[0];

@@ -329,9 +329,7 @@ mod tests {
         let mut harness = Harness::new_ui(|ui| drop(notices.borrow_mut().show(ui.ctx(), room)));
         harness.run();
         let below = harness.get_by_label("Show it").rect();
-        offer(
-            "Generation 5 is the best so far: 3.63 m, passes 1 step beside the stairs of the staircase",
-        );
+        offer("Generation 5 is the best so far: 3.63 m, lies beside step 1 of the stairs");
         harness.step();
         assert_eq!(harness.get_by_label("Show it").rect(), below);
     }

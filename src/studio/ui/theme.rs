@@ -161,7 +161,7 @@ pub const PICTURE_HEIGHT: f32 = 64.0;
 pub const NARROW_STAGE: f32 = 560.0;
 /// Minimum width of the library at which it shows columns, in points.
 pub const COLUMNS_WIDTH: f32 = 560.0;
-/// Widths of the library's columns after the name: fitness, preset, generation, date, in points.
+/// Widths of the library's columns after the name: way, preset, generation, date, in points.
 pub const COLUMN_WIDTHS: [f32; 4] = [84.0, 84.0, 150.0, 136.0];
 /// Minimum height of the library's list, as a share of the panel's height.
 pub const LEAST_LIST_SHARE: f32 = 0.55;

@@ -33,8 +33,8 @@ pub(super) struct Workspace {
     pub awaits_tour: bool,
     /// Titles of the sections whose advanced settings are unfolded.
     pub unfolded: BTreeSet<String>,
-    /// Whether the stage is presented in full screen.
-    is_presenting: bool,
+    /// Whether the stage is presented in full screen: without panels and cards, under a large caption.
+    pub is_presenting: bool,
     /// Whether the screen is black in the presenting mode.
     is_black: bool,
     /// Label of the setting to scroll to, until the settings panel has handled it.
@@ -56,11 +56,6 @@ impl Workspace {
     /// Returns whether the player shows the torques of each joint over time.
     pub fn shows_torques(&self) -> bool {
         self.unfolded.contains(TORQUES)
-    }
-
-    /// Returns whether the stage is presented in full screen: without panels and cards, under a large caption.
-    pub fn is_presenting(&self) -> bool {
-        self.is_presenting
     }
 
     /// Returns whether the presenting mode currently shows a black screen instead of the stage.
@@ -184,12 +179,12 @@ mod tests {
             let mut workspace =
                 Workspace { is_bare, modal: Some(Modal::Tour(2)), ..Workspace::default() };
             workspace.apply(&WindowCommand::TogglePresenting);
-            assert!(workspace.is_presenting() && workspace.modal().is_none());
+            assert!(workspace.is_presenting && workspace.modal().is_none());
             workspace.apply(&WindowCommand::TogglePanels);
             workspace.apply(&WindowCommand::ToggleModal(Modal::Keys));
             workspace.modal = Some(Modal::Tour(2));
             workspace.apply(&WindowCommand::CloseModal);
-            assert!(!workspace.is_presenting(), "Escape ends it");
+            assert!(!workspace.is_presenting, "Escape ends it");
             assert_eq!((workspace.is_bare, workspace.modal()), (is_bare, Some(Modal::Tour(2))));
         }
     }
@@ -199,8 +194,8 @@ mod tests {
         let mut workspace = Workspace::new(true, true);
         workspace.apply(&WindowCommand::ToggleModal(Modal::Keys));
         workspace.apply(&WindowCommand::CloseModal);
-        assert!(workspace.is_presenting() && workspace.modal().is_none());
+        assert!(workspace.is_presenting && workspace.modal().is_none());
         workspace.apply(&WindowCommand::OpenPanel(PanelKind::World));
-        assert!(!workspace.is_presenting());
+        assert!(!workspace.is_presenting);
     }
 }

@@ -33,11 +33,11 @@ fn a_complete_lesson_leaves_the_own_run_untouched() {
 }
 
 #[test]
-fn the_fifth_lesson_repeats_a_run_bit_for_bit() {
-    let Some(studio) = Studio::open("lesson-5", "--preset quick") else { return };
+fn the_last_lesson_repeats_a_run_bit_for_bit() {
+    let Some(studio) = Studio::open("lesson-9", "--preset quick") else { return };
     studio.pause_evolution();
     studio.open_panel("Learn");
-    studio.scroll_and_click("Button", "Begin lesson 5");
+    studio.scroll_and_click("Button", "Begin lesson 9");
     studio.wait_for_title("showing a lesson");
     studio.scroll_and_click("Button", "The same run twice");
     studio.scroll_and_click("Button", "Guess: the same hash");

@@ -50,7 +50,7 @@ pub enum SenseOrgan {
     Sight,
     /// The senses of contacts with ground and stairs.
     Touch,
-    /// The senses of attitude and motion in space.
+    /// The senses of tilt and motion in space.
     Balance,
 }
 
@@ -152,10 +152,10 @@ setting_group! {
             switch("Touch")
                 .hint("Whether the snake feels contacts: touch, load, and resistance ahead");
 
-        /// Whether the senses of attitude and motion work: pitch, roll, yaw, speed and distance from the middle.
+        /// Whether the senses of tilt and motion work: pitch, roll, yaw, speed and distance from the middle.
         balance: bool = true,
             switch("Balance")
-                .hint("Whether the snake feels its attitude and motion: pitch, roll, yaw, speed, distance aside");
+                .hint("Whether the snake feels its tilt and motion: pitch, roll, yaw, speed, distance aside");
     }
 }
 

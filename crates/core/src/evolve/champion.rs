@@ -64,6 +64,11 @@ impl Champion {
     pub fn score(&self) -> String {
         self.trial.fitness.text(self.evaluation.fitness)
     }
+
+    /// Describes the fitness in a few letters for tables: see [`Fitness::brief`](crate::score::Fitness::brief).
+    pub fn brief(&self) -> String {
+        self.trial.fitness.brief(self.evaluation.fitness)
+    }
 }
 
 /// Run that found an individual, with the individual's generation and index.

@@ -343,10 +343,10 @@ mod tests {
         let landed = champion.trial.stairs.end_y_m() - 1.0;
         for (end_m, steps_climbed, words) in [
             (5.59, 2, "climbs 2 steps"),
-            (5.59, 0, "passes 2 steps beside the stairs"),
-            (3.84, 0, "passes 1 step beside the stairs"),
+            (5.59, 0, "lies beside step 2 of the stairs"),
+            (3.84, 0, "lies beside step 1 of the stairs"),
             (landed, 10, "stands on the landing"),
-            (landed, 0, "passes 10 steps beside the stairs"),
+            (landed, 0, "lies beside step 10 of the stairs"),
             (landed + 2.0, 0, "lies behind the stairs"),
             (-7.23, 0, "starting position"),
         ] {

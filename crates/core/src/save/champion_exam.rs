@@ -72,14 +72,14 @@ pub fn exam_in_words(exam: &[SuiteResult]) -> Option<String> {
                 classes.iter().map(|(class, landed, of)| format!("{class} {landed} of {of}"));
             let each: Vec<String> = each.collect();
             return format!(
-                "{name} {} of {} landed ({})",
+                "{name} {} of {} climbed ({})",
                 result.landed,
                 result.trials,
                 each.join(", ")
             );
         }
         if result.each.is_empty() {
-            return format!("{name} {} of {} landed", result.landed, result.trials);
+            return format!("{name} {} of {} climbed", result.landed, result.trials);
         }
         let each = result.each.iter().map(|(label, kept)| format!("{label} {kept:.2}"));
         format!("way kept at {}", each.collect::<Vec<_>>().join(", "))

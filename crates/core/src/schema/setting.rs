@@ -211,7 +211,10 @@ impl Setting {
 
     /// Describes the range of the number or of the list in words, in the unit of files; empty for other kinds of setting.
     pub fn range_in_words(&self) -> String {
-        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let unit = match self.unit {
+            "" | "°" => self.unit.to_owned(),
+            unit => format!(" {unit}"),
+        };
         self.range_with(&unit, |range| *range)
     }
 

@@ -232,7 +232,7 @@ impl SettingGroup for AgentSettings {
             holding_power_w: number("Holding power", 0.0..=10_000.0).advanced()
                 .unit("W")
                 .hint(
-                    "Power that each axis of a joint takes to hold 1000 N·m, even if it does not move; it grows with the \
+                    "Power that each axis of a joint takes to hold 1,000 N·m, even if it does not move; it grows with the \
                      square of the torque and counts as energy",
                 )
                 .slider(0.0, 1000.0)

@@ -16,22 +16,22 @@ choices! {
     #[derive(Default)]
     pub enum Fitness {
         #[default]
-        Centre = "centre", "Centre, y",
-            "The y of the middle block at the end.\n\
+        Centre = "centre", "Distance of the middle block",
+            "Distance of the middle block along the stairs (y) at the end.\n\
              Unintended rewards: Passing beside the stairs, and a leap in the last half second.";
-        Head = "head", "Head, y",
-            "The y of the head at the end.\n\
+        Head = "head", "Distance of the head",
+            "Distance of the head along the stairs (y) at the end.\n\
              Unintended rewards: Stretching or throwing the head forward.";
         /// The y of the centre of mass at the end. A curled snake scores less than a straight one that got as far.
-        CentreOfMass = "centre_of_mass", "Centre of mass, y",
-            "The y of the centre of mass at the end.\n\
-             Unintended rewards: The same as with the centre; a curled snake scores less.";
-        Height = "height", "Height",
+        CentreOfMass = "centre_of_mass", "Distance of the centre of mass",
+            "Distance of the centre of mass along the stairs (y) at the end.\n\
+             Unintended rewards: The same as with the middle block; a curled snake scores less.";
+        Height = "height", "Height of the middle block",
             "The height of the middle block at the end.\n\
              Unintended rewards: Jumping and rearing on the spot.";
         /// The furthest y of the middle limb at any time, wherever the snake ends.
-        FurthestY = "furthest_y", "Furthest y",
-            "The furthest y of the middle block at any time.\n\
+        FurthestY = "furthest_y", "Furthest distance",
+            "Furthest distance of the middle block along the stairs (y) at any time.\n\
              Unintended rewards: A leap that falls back.";
         /// The number of steps climbed. A step is climbed if the middle limb's centre is past the riser, over the tread, and within the
         /// width. All snakes that have not climbed a step are equal.
@@ -40,8 +40,8 @@ choices! {
              Unintended rewards: None, but there is no reward before the first step, so the search starts blindly.";
         /// The y of the middle limb's centre. Beside, inside or behind the stairs it counts only up to the first riser. On the landing it
         /// counts up to the place where the whole snake stands on the landing.
-        Climb = "climb", "Climb: y on the stairs",
-            "The y of the middle block at the end. Beside the stairs, only the distance to the first riser counts.\n\
+        Climb = "climb", "Distance on the stairs",
+            "Distance of the middle block along the stairs (y) at the end. Beside the stairs, only the distance to the first riser counts.\n\
              Unintended rewards: A leap over the stairs in the last half second.";
         /// The share of the stairs. The distance of every limb along the stairs counts by its mass, so no body has an advantage by its
         /// length: 0 at the start, 1 with all limbs on the landing. An early arrival adds up to 0.1.
@@ -60,14 +60,16 @@ impl Fitness {
     /// Returns a short description, to follow "fitness: ".
     pub fn words(self) -> &'static str {
         match self {
-            Self::Centre => "y of the middle block at the end",
+            Self::Centre => "distance of the middle block along the stairs (y) at the end",
             Self::Climb => {
-                "y of the middle block at the end (beside the stairs, only the distance to the first riser counts)"
+                "distance of the middle block along the stairs (y) at the end (beside them, only the distance to the first riser counts)"
             }
-            Self::Head => "y of the head at the end",
-            Self::CentreOfMass => "y of the centre of mass at the end",
+            Self::Head => "distance of the head along the stairs (y) at the end",
+            Self::CentreOfMass => "distance of the centre of mass along the stairs (y) at the end",
             Self::Height => "height of the middle block at the end",
-            Self::FurthestY => "furthest y of the middle block at any time",
+            Self::FurthestY => {
+                "furthest distance of the middle block along the stairs (y) at any time"
+            }
             Self::StepsClimbed => "steps climbed at the end",
             Self::Share => "share of the way to the landing at the end",
         }
@@ -94,6 +96,14 @@ impl Fitness {
     /// Returns the unit with a leading space, or an empty string for a count or a share.
     pub fn unit(self) -> &'static str {
         if matches!(self, Self::StepsClimbed | Self::Share) { "" } else { " m" }
+    }
+
+    /// Describes a fitness in a few letters for tables, with its unit. A share is in percent.
+    pub fn brief(self, fitness: f32) -> String {
+        match self {
+            Self::Share => format!("{:.1} %", 100.0 * fitness),
+            other => other.text(fitness),
+        }
     }
 
     /// Describes a fitness in words, with its unit.

@@ -46,8 +46,8 @@ choices! {
     #[derive(Default)]
     pub enum PerturbationList {
         #[default]
-        Own = "own", "Own of each snake",
-            "Each snake has perturbations of its own, so none can adapt to a few fixed ones.";
+        Own = "own", "Different for each snake",
+            "Each snake has variations of its own, so none can adapt to a few fixed ones.";
         Fixed = "fixed", "The same for all",
             "All snakes of all generations have the same list, which compares them fairly.";
         Generation = "generation", "New in each generation",

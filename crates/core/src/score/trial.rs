@@ -83,9 +83,9 @@ impl SettingGroup for Trial {
                 .unit("s")
                 .hint("Simulated time of a trial. Longer trials take longer to evaluate")
                 .slider(1.0, 30.0);
-            start_y_m: number("Start at y", -100.0..=100.0).advanced()
+            start_y_m: number("Start position", -100.0..=100.0).advanced()
                 .unit("m")
-                .hint("Initial position of the snake's middle. The stairs are at larger y")
+                .hint("Distance of the snake's middle along the stairs (y) at the start. The stairs are further on")
                 .slider(-20.0, 10.0);
         }
         walk.group("physics", physics);

@@ -75,7 +75,7 @@ setting_group! {
         arena_back_m: f32 = 30.0,
             number("Backward limit", 1.0..=1000.0).advanced()
                 .unit("m")
-                .hint("A snake is disqualified if a limb is further behind the origin (y = 0) than this")
+                .hint("A snake is disqualified if a limb is further than this behind the place where the distance (y) is 0")
                 .slider(5.0, 100.0);
     }
 }

@@ -84,9 +84,9 @@ impl SettingGroup for Stairs {
                 .hint("Width of the stairs. A snake that drifts sideways falls off narrow stairs")
                 .slider(1.0, 20.0);
             // The range ends at a hundred metres, within which 32-bit floats still resolve a hundredth of a millimetre.
-            first_riser_y_m: number("First riser at y", -100.0..=100.0).advanced()
+            first_riser_y_m: number("Position of the first riser", -100.0..=100.0).advanced()
                 .unit("m")
-                .hint("Position at which the stairs begin")
+                .hint("Distance (y) at which the stairs begin")
                 .slider(0.0, 20.0);
             landing_m: number("Landing", 0.0..=100.0).advanced()
                 .unit("m")
@@ -210,7 +210,7 @@ impl Stairs {
     /// Counts the steps climbed by a snake whose centre is at `y_m`, in metres.
     ///
     /// A step counts as climbed once the centre has passed its riser. This rule reproduces Table 1 of the report: 3.84 is one step, 5.79
-    /// two, 8.05 three. Only y counts, as in the report: a snake that crawls past the stairs at their side counts, too.
+    /// two, 8.05 three. Only y counts, as in the report: a snake that crawls past the stairs counts, too.
     pub fn steps_climbed(&self, y_m: f64) -> u32 {
         if let PerPart::All(_) = self.tread_m {
             let is_passed = |index: &u32| y_m >= f64::from(self.tread_y_m(*index));
@@ -303,8 +303,7 @@ impl Stairs {
         match self.steps_climbed(y_m) {
             0 => None,
             _ if y_m > f64::from(self.end_y_m()) => Some("lies behind the stairs".to_owned()),
-            1 => Some("passes 1 step beside the stairs".to_owned()),
-            passed => Some(format!("passes {passed} steps beside the stairs")),
+            passed => Some(format!("lies beside step {passed} of the stairs")),
         }
     }
 

@@ -10,7 +10,10 @@ setting_group! {
         friction: f32 = 1.0,
             // The range goes from ice without any friction to beyond the 150 of the report's engine manual.
             number("Friction", 0.0..=1000.0)
-                .hint("Grip: largest sideways force divided by the force pressing down. 0 is no grip, 1 normal, 5 like glue")
+                .hint(
+                    "Coefficient of friction: largest force along the surface per force onto it. 0 slides freely, 1 grips \
+                     well, 5 is like glue",
+                )
                 .slider(0.0, 10.0)
                 .logarithmic_from(0.01);
 

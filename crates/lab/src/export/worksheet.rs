@@ -1,6 +1,6 @@
 //! Worksheets as pages that a browser prints on one sheet of A4.
 
-/// Beginning of the page: its style, and the switch for the teacher's part, which is printed on a sheet of its own.
+/// Beginning of the page: its style, and the switch for the teacher's part, which is hidden at first and printed on a sheet of its own.
 const HEAD: &str = "<meta charset=\"utf-8\">
 <meta name=\"viewport\" content=\"width=device-width\">
 <style>
@@ -11,11 +11,9 @@ p { margin: 0 0 1.5mm; } .item { padding-left: 5mm; text-indent: -5mm; }
 .write { display: flex; gap: 2mm; margin: 3mm 0; } .line { border-bottom: 0.3mm solid #555; height: 5mm; }
 table { border-collapse: collapse; margin: 2mm 0; min-width: 60%; }
 th, td { border: 0.3mm solid #888; padding: 1.2mm 2.5mm; text-align: left; min-width: 24mm; }
-label { display: block; margin-top: 8mm; } .teacher { border-top: 0.3mm solid #888; padding-top: 3mm; }
-@media print {
-  body { margin: 0; padding: 0; } label, .teacher { display: none; }
-  body:has(input:checked) .teacher { display: block; break-before: page; border: 0; }
-}
+label { display: block; margin-top: 8mm; } .teacher { display: none; border-top: 0.3mm solid #888; padding-top: 3mm; }
+body:has(input:checked) .teacher { display: block; }
+@media print { body { margin: 0; padding: 0; } label { display: none; } .teacher { break-before: page; border: 0; } }
 </style>
 ";
 
@@ -39,7 +37,7 @@ fn block(block: &str) -> String {
         return format!("<h1>{heading}</h1>\n");
     }
     match block {
-        "---" => "<label><input type=\"checkbox\"> Print the teacher's part, too</label>\n\
+        "---" => "<label><input type=\"checkbox\"> Show and print the teacher's part</label>\n\
                   <div class=\"teacher\">\n"
             .to_owned(),
         table if table.starts_with('|') => {

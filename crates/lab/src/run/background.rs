@@ -138,21 +138,23 @@ impl BackgroundState {
 }
 
 impl BackgroundRun {
-    /// Opens a run and pauses it before its first evaluation: see [`Self::resume`]. If `before` is given, cancels that run and
-    /// waits on the new thread until it has ended, because it may still use the folder.
+    /// Opens a run and pauses it before its first evaluation: see [`Self::resume`]. Makes the `requests` first, as
+    /// [`Self::request_changes`] does, so that more generations continue even a finished run. If `before` is given, cancels that run
+    /// and waits on the new thread until it has ended, because it may still use the folder.
     ///
     /// # Errors
     /// The thread could not be started.
     pub fn start(
         source: RunSource,
         evaluator: Arc<dyn Evaluator>,
+        requests: impl IntoIterator<Item = (String, SettingValue)>,
         before: Option<Self>,
     ) -> std::io::Result<Self> {
         let shared = Arc::new(BackgroundState {
             control: RunControl::default(),
             pause_after_generation: AtomicBool::new(false),
             population: AtomicU32::new(source.plan.settings.evolution.population),
-            requests: Mutex::default(),
+            requests: Mutex::new(requests.into_iter().collect()),
             evaluator: Mutex::new(evaluator),
         });
         shared.control.pause();

@@ -94,7 +94,7 @@ pub fn run_name(
 }
 
 /// Returns the readable name of a listed run, or the user's own name for it. Only a run that can be resumed is named with its best result,
-/// for which its whole log is read: only such runs are offered by their names.
+/// for which its whole log is read: there may be many finished ones.
 pub fn name_of_listed(run: &RunSummary, settings: &str) -> String {
     let best = || {
         let (_, records) = run.is_stopped().then(|| load_log(&run.folder).ok())??;

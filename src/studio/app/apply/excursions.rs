@@ -27,8 +27,8 @@ const FRAMES: [Excursion; 2] = [Excursion::Presenting, Excursion::Lesson];
 /// Returns the effect of a command that shows `shown`, if anything, on a stage in the mode `from`.
 fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &WayBack) -> Effect {
     use StageCommand::{
-        Join, KeepChange, Leave, RaceGenerations, RaceLeaders, RaceStairs, Show, ShowGeneration,
-        Single, Sweep, TellStory, ToggleFollowEvolution,
+        Join, KeepChange, Leave, RaceGenerations, RaceKnockOuts, RaceLeaders, RaceStairs, Show,
+        ShowGeneration, Single, Sweep, TellStory, ToggleFollowEvolution,
     };
     let is_what_if = |mode: &StageMode| matches!(mode, StageMode::WhatIf { .. });
     let is_race = shown == Some(&StageMode::Race);
@@ -52,9 +52,9 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
             _ => Effect::None,
         },
         Command::Stage(Join(_)) if !is_race || *from == StageMode::Race => Effect::None,
-        Command::Stage(Join(_) | Sweep(_) | RaceStairs | RaceGenerations | RaceLeaders(_)) => {
-            Effect::Enter(Excursion::Race)
-        }
+        Command::Stage(
+            Join(_) | Sweep(_) | RaceStairs | RaceKnockOuts | RaceGenerations | RaceLeaders(_),
+        ) => Effect::Enter(Excursion::Race),
         Command::Stage(Single) => Effect::Enter(Excursion::Snake),
         Command::Stage(Show(_)) | Command::Library(_) | Command::File(_) => match way.innermost() {
             _ if is_race => Effect::Enter(Excursion::Race),

@@ -16,11 +16,12 @@ use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode, end_s, placed};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::following::Following;
+use crate::studio::state::knock_outs::knock_outs;
 use crate::studio::state::lineup::{all_generations, champion_of, leaders, with_one_more};
 use crate::studio::state::stairs_race::stairs_race;
 use crate::studio::state::sweep::sweep;
 use crate::studio::state::turns::Turns;
-use crate::studio::state::what_if::{another_beside, kept};
+use crate::studio::state::what_if::{ChangedStage, another_beside, kept};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::plain_name;
 
@@ -183,6 +184,7 @@ impl StageParams<'_, '_> {
             | StageCommand::ShowGeneration(_)
             | StageCommand::Sweep(_)
             | StageCommand::RaceStairs
+            | StageCommand::RaceKnockOuts
             | StageCommand::RaceGenerations
             | StageCommand::RaceLeaders(_) => {
                 self.present_others(self.chosen(command, run, opening)?, notices);
@@ -219,11 +221,15 @@ impl StageParams<'_, '_> {
                 })?)
             }
             StageCommand::Sweep(field) => {
-                let champions = self.to_change().champions;
-                champions.first().map(|champion| sweep(champion, field)).transpose()?
+                // In a what-if, this is the copy with the values that the sliders show.
+                let stage = ChangedStage { show: &self.to_change(), moment: None };
+                stage.current().map(|champion| sweep(champion, field)).transpose()?
             }
             StageCommand::RaceStairs => {
                 self.to_change().champions.first().map(stairs_race).transpose()?
+            }
+            StageCommand::RaceKnockOuts => {
+                self.to_change().champions.first().map(knock_outs).transpose()?
             }
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),

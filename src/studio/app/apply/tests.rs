@@ -4,7 +4,6 @@ mod excursions;
 
 use super::*;
 use crate::studio::commands::StageCommand;
-use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::scene::camera::rig::CameraRig;
@@ -14,6 +13,7 @@ use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::selection::Selection;
+use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::current_run::{climber, prepared_run};
 use crate::studio::state::following::Following;
@@ -215,6 +215,22 @@ fn a_new_run_names_the_change_that_was_tried_and_takes_it() {
     assert_eq!(said, Some("The new run has the change that was tried: friction 0.25."));
     let run = app.world().resource::<CurrentRun>();
     assert_eq!(run.next_settings().trial.surface.friction, 0.25);
+}
+
+#[test]
+fn a_sweep_in_a_what_if_is_around_the_value_that_the_slider_shows() {
+    let mut app = app();
+    let what_if = show_after(&mut app, Show::solo(climber(0)), set("0.05")).expect("a what-if");
+    let sweep = Command::Stage(StageCommand::Sweep("trial.surface.friction".to_owned()));
+    let race = show_after(&mut app, what_if, sweep).expect("five lanes");
+    assert_eq!(friction_after(&mut app, &[]), 0.05);
+    let labels: Vec<&str> = race.champions.iter().map(StagedChampion::label).collect();
+    let before = "friction 0.05 (as before)";
+    assert_eq!(
+        labels,
+        ["friction 0.01", "friction 0.025", before, "friction 0.1", "friction 0.25"]
+    );
+    assert!(race.champions.iter().all(|lane| lane.changes_at_step().is_none()), "from the start");
 }
 
 #[test]

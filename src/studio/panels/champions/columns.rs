@@ -10,7 +10,6 @@ use crate::studio::ui::text_rows::weak;
 use crate::studio::ui::theme;
 use snakes_core::evolve::Champion;
 use snakes_core::save::library::Thumbnail;
-use snakes_core::score::Fitness;
 
 /// Widths of the columns for fitness, time and energy, in points.
 const WIDTHS: [f32; 3] = [62.0, 54.0, 54.0];
@@ -18,7 +17,7 @@ const WIDTHS: [f32; 3] = [62.0, 54.0, 54.0];
 const NAME_WIDTH: f32 = 170.0;
 /// Headings of the columns and their tooltips.
 const HEADS: [(&str, &str); 3] = [
-    ("Fitness", "What the run rewards: see Fitness in the Watch panel"),
+    ("Fitness", "What the run rewards: see Fitness in the Change panel"),
     (
         "Time",
         "Simulated time until the snake first reached the top of the stairs; - if it does not end there",
@@ -37,12 +36,7 @@ pub(super) fn cells(champion: &Champion, time: Result<f64, &str>) -> [String; 3]
     let energy =
         champion.evaluation.effort.map(|effort| format!("{:.1} kJ", effort.energy_j / 1000.0));
     let time = time.map_or_else(str::to_owned, |time_s| format!("{time_s:.2} s"));
-    // The column has no room for the words, which the tooltip has.
-    let score = match (champion.trial.fitness, champion.evaluation.fitness) {
-        (Fitness::Share, share) => format!("{:.1} %", 100.0 * share),
-        _ => champion.score(),
-    };
-    [score, time, energy.unwrap_or_else(|| "-".to_owned())]
+    [champion.brief(), time, energy.unwrap_or_else(|| "-".to_owned())]
 }
 
 /// Draws the headings of the columns above rows of this width, in points.

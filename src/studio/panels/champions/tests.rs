@@ -37,7 +37,7 @@ fn panel<'a>(opening: &'a [(String, LoadedChampion)], reports: &'a [GenerationRe
     let mut panel = ChampionsPanel::default();
     testing::panel([360.0, 400.0], move |ui, commands| {
         let shown = &[ShownLane { champion: ShownChampion::Opening(0), lane: None }];
-        let view = ChampionsView { opening, reports, shown, leaders: &|_| 2, follows: false };
+        let view = ChampionsView { opening, reports, shown, leaders: &|_| 2, follows: None };
         panel.ui(ui, &view, commands);
     })
 }

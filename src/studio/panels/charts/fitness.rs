@@ -3,11 +3,12 @@
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::pick::Pick;
 use snakes_core::evolve::{GenerationRecord, IndividualId, Settings, Statistics};
+use snakes_core::schema::Choices;
 use snakes_core::score::Fitness;
 use snakes_lab::plot::{Axis, Chart, Figure, Mark, Role, Series, Shape, extent};
 use snakes_lab::run::GenerationReport;
 
-/// Minimum end of the axis of generations: the six generations of the original experiment.
+/// Minimum end of the axis of generations: the six generations of the report's experiment.
 const MIN_GENERATIONS: f64 = 6.0;
 /// Maximum distance below the landing at which the landing is marked, in metres.
 const LANDING_SHOWN_BELOW_M: f64 = 6.0;
@@ -78,7 +79,7 @@ pub(super) fn axis_of_finished(generations: usize) -> Axis {
 
 /// Returns the axis around these values of fitness.
 pub(super) fn fitness_axis(fitness: Fitness, values: impl IntoIterator<Item = f64>) -> Axis {
-    Axis::around(axis_title(fitness), fitness.unit().trim(), values, 1.0)
+    Axis::around(fitness.choice().title, fitness.unit().trim(), values, 1.0)
 }
 
 /// Creates the fitness chart without its series: the axes, and marks at positions on the stairs.
@@ -104,22 +105,8 @@ fn frame(settings: &Settings, finished: usize, values: impl Iterator<Item = f64>
     // Otherwise the line of a best snake at the top of the stairs would coincide with the frame.
     let headroom = ((max - min) * HEADROOM).max(1.0);
     let unit = trial.fitness.unit().trim();
-    let y = Axis::new(axis_title(trial.fitness), unit, min - margin..=max + headroom);
+    let y = Axis::new(trial.fitness.choice().title, unit, min - margin..=max + headroom);
     Chart { marks, ..Chart::new(axis_of_finished(finished), y, Vec::new()) }
-}
-
-/// Returns the title of the fitness axis.
-fn axis_title(fitness: Fitness) -> &'static str {
-    match fitness {
-        Fitness::Centre => "Distance of the middle block",
-        Fitness::Climb => "Distance",
-        Fitness::Head => "Distance of the head",
-        Fitness::CentreOfMass => "Distance of the centre of mass",
-        Fitness::Height => "Height of the middle block",
-        Fitness::FurthestY => "Furthest distance",
-        Fitness::StepsClimbed => "Steps climbed",
-        Fitness::Share => "Share of the stairs",
-    }
 }
 
 #[cfg(test)]

@@ -103,8 +103,8 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             Some(Ok(_)) => {}
         }
     }
-    let Some(runs) = &others.runs else { return explain(ui, "Loading the list of runs…") };
-    let mut choices = runs.iter().filter(|other| other.run.folder != run.folder()).peekable();
+    let Some(choices) = run.listed() else { return explain(ui, "Loading the list of runs…") };
+    let mut choices = choices.peekable();
     ui.horizontal(|ui| {
         match choices.peek() {
             Some(_) => ui.label(format!("Compare with up to {MOST_COMPARED} other runs:")),

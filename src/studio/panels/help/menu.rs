@@ -138,6 +138,7 @@ fn entry(
 mod tests {
     use super::*;
     use crate::studio::commands::RunCommand;
+    use crate::studio::panels::settings::tests::click;
     use crate::studio::panels::testing::{Sent, clicked, panel};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -196,8 +197,7 @@ mod tests {
                     theme::apply(ui.ctx());
                     menu(ui, Situation::default(), &|_| None, &recent, ("", None), &mut Vec::new());
                 });
-                harness.get_by_label(of.name()).click();
-                harness.run();
+                click(&mut harness, of.name());
                 let mut entries = actions().iter().filter(|action| action.menu == of);
                 let last = entries.rfind(|action| !action.key().contains("...")).expect("one");
                 let entry = harness.get_by_label_contains(last.name).rect();
@@ -222,8 +222,7 @@ mod tests {
             State::default(),
         );
         for format in ExportFormat::ALL {
-            harness.get_by_label("Share").click();
-            harness.run();
+            click(&mut harness, "Share");
             let ending = format!("(.{})", format.info().ending);
             harness.get_by_label_contains(&ending).click();
             harness.run();
@@ -241,12 +240,10 @@ mod tests {
         });
         harness.run();
         harness.get_by_label("climb.mp4  42 %, about 20 s left, about 6.1 MB");
-        harness.get_by_label("Cancel").click();
-        harness.run();
+        click(&mut harness, "Cancel");
         let cancel = Command::Share(ShareCommand::Cancel);
         assert_eq!(harness.state_mut().2.pop(), Some(cancel));
-        harness.get_by_label("Share").click();
-        harness.run();
+        click(&mut harness, "Share");
         harness.get_by_label_contains("(.csv)").click();
         harness.run();
         assert_eq!(harness.state().2, [], "one file at a time");

@@ -27,9 +27,9 @@ const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Stage,
         title: "Snakes that learn to climb",
-        text: "A generation moves at once, its best snake in full colour. Their movements evolve. Use the player \
-               below to pause or move through time. Drag to turn the camera; drag a limb to pull it.",
-        try_it: "Pause it with Space, or click in the strip below it",
+        text: "All snakes of a generation move together, the best in full colour. Their movements evolve. Use the \
+               player below to pause or move through time. Drag to turn the camera; drag a limb to pull it.",
+        try_it: "Pause it with Space, or click in the strip below the player",
         is_done_by: |command| {
             matches!(command, Command::Player(PlayerCommand::Toggle | PlayerCommand::Seek(_)))
         },

@@ -144,7 +144,7 @@ fn exam_table(ui: &mut egui::Ui, exam: &[SuiteResult]) {
                 &sentence,
                 match is_of_ways {
                     true => format!("at least {} of the way kept", in_percent(result.kept)),
-                    false => format!("{} of {} landed", result.landed, result.trials),
+                    false => format!("{} of {} climbed", result.landed, result.trials),
                 },
             );
             let ways = result.each.iter().filter(|_| is_of_ways);

@@ -42,10 +42,12 @@ pub struct NotesField {
 /// A path that the user types, in answer to a question.
 #[derive(Debug)]
 pub struct PathPrompt {
-    question: FileQuestion,
+    /// The question.
+    pub question: FileQuestion,
     /// Reason why no file dialog is shown.
-    reason: Option<String>,
-    prompt: TextPrompt,
+    pub reason: String,
+    /// Field for the path.
+    pub prompt: TextPrompt,
 }
 
 impl RenameField {
@@ -149,17 +151,6 @@ impl LibraryPanel {
         }
     }
 
-    /// Opens the field for a path, in place of a file dialog.
-    pub(super) fn ask_for_path(
-        &mut self,
-        question: FileQuestion,
-        suggestion: String,
-        reason: Option<String>,
-    ) {
-        let prompt = TextPrompt::new(suggestion);
-        self.path_prompt = Some(PathPrompt { question, reason, prompt });
-    }
-
     /// Draws the path field, if it is open.
     pub(super) fn path_field(&mut self, ui: &mut egui::Ui) {
         let Some(PathPrompt { question, reason, prompt }) = &mut self.path_prompt else { return };
@@ -171,9 +162,7 @@ impl LibraryPanel {
                 ("Export to", "Path of a folder; it is created if necessary")
             }
         };
-        if let Some(reason) = reason {
-            explain(ui, reason);
-        }
+        explain(ui, reason);
         let mut is_closed = false;
         ui.horizontal_wrapped(|ui| {
             let name = ui.label(label);

@@ -22,7 +22,7 @@ impl LibraryPanel {
     pub(super) fn header(&mut self, ui: &mut egui::Ui, library: &Library, history: &UndoHistory) {
         let commands = &mut self.sent;
         title_and(ui, "Library", |ui| {
-            let hint = format!("Read the folder again: {}", library.folder().display());
+            let hint = format!("Read the folder again: {}", library.saves.path().display());
             let refresh = Command::Library(LibraryCommand::Refresh);
             CommandButton::small("Refresh", hint, refresh).show(ui, commands);
             let hint =

@@ -33,7 +33,7 @@ impl LibraryPanel {
             }
             if key == Press::A {
                 let rows = self.order.rows();
-                self.selection.all(rows.iter().map(|row| library.items()[*row].place()));
+                self.selection.all(rows.iter().map(|row| library.items[*row].place()));
                 continue;
             }
             let Some(action) = self.actions.1.iter().find(|action| action.key == Some(key)) else {
@@ -56,7 +56,7 @@ impl LibraryPanel {
     fn move_cursor(&mut self, key: Press, held: Modifiers, library: &Library) {
         let rows = self.order.rows();
         let Some(last) = rows.len().checked_sub(1) else { return };
-        let place_of = |row: usize| library.items()[rows[row]].place();
+        let place_of = |row: usize| library.items[rows[row]].place();
         let now = self
             .selection
             .cursor()
@@ -73,7 +73,7 @@ impl LibraryPanel {
         };
         let place = place_of(next.min(last)).clone();
         if held.shift {
-            self.selection.extend(&place, rows.iter().map(|row| library.items()[*row].place()));
+            self.selection.extend(&place, rows.iter().map(|row| library.items[*row].place()));
         } else {
             self.selection.only(&place);
         }

@@ -25,6 +25,7 @@ use crate::studio::commands::library::LibraryCommand;
 use crate::studio::state::library::{Library, LibraryItem};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::accessible::named;
+use crate::studio::ui::text_prompt::TextPrompt;
 use crate::studio::ui::text_rows::{explain, problem};
 use crate::studio::ui::theme;
 use snakes_core::save::library::{EXPORTS, SavePlace};
@@ -96,7 +97,7 @@ impl LibraryPanel {
         if self.order.update(library, &self.search, self.sort, now_s) {
             // An action must never concern a save that the search hides.
             let shown: BTreeSet<&SavePlace> =
-                self.order.rows().iter().map(|row| library.items()[*row].place()).collect();
+                self.order.rows().iter().map(|row| library.items[*row].place()).collect();
             self.selection.retain(|place| shown.contains(place));
         }
         // The details of a selected save leave a part of the panel to the rows of the list; they scroll instead.
@@ -116,17 +117,18 @@ impl LibraryPanel {
 
     /// Removes entries that do not exist any more from the selection, and selects new ones.
     fn follow(&mut self, library: &Library) {
-        if self.listing != library.listings() {
-            self.listing = library.listings();
+        if self.listing != library.listings {
+            self.listing = library.listings;
             self.selection.retain(|place| library.item(place).is_some());
             self.renaming =
                 self.renaming.take().filter(|renaming| library.item(&renaming.place).is_some());
         }
-        let (count, newest) = library.newest();
-        let newest =
-            newest.filter(|place| count != self.new_entries && library.item(place).is_some());
-        if let Some(place) = newest {
-            self.new_entries = count;
+        let (count, newest) = &library.newest;
+        let is_there = |place: &&SavePlace| library.item(place).is_some();
+        if let Some(place) = newest.as_ref().filter(is_there)
+            && *count != self.new_entries
+        {
+            self.new_entries = *count;
             self.selection.only(place);
             self.scroll_to = Some(place.clone());
         }
@@ -134,22 +136,26 @@ impl LibraryPanel {
 
     /// Processes requests that come from the menu or from failed file dialogs.
     fn take_requests(&mut self, library: &Library) {
-        let (count, unanswered) = library.unanswered();
-        if let Some((question, reason)) = unanswered.filter(|_| count != self.unanswered) {
-            self.unanswered = count;
-            let exports = || library.folder().join(EXPORTS).to_string_lossy().into_owned();
+        let (count, unanswered) = &library.unanswered;
+        if let Some((question, reason)) = unanswered
+            && *count != self.unanswered
+        {
+            self.unanswered = *count;
+            let exports = || library.saves.path().join(EXPORTS).to_string_lossy().into_owned();
             let suggestion = match question {
                 FileQuestion::Export(_) => exports(),
                 FileQuestion::Share(format, name) => {
                     let name = format!("{name}.{}", format.info().ending);
-                    library.folder().join(name).to_string_lossy().into_owned()
+                    library.saves.path().join(name).to_string_lossy().into_owned()
                 }
                 FileQuestion::Open | FileQuestion::Import => String::new(),
             };
-            self.ask_for_path(question.clone(), suggestion, Some(reason.clone()));
+            let (question, reason) = (question.clone(), reason.clone());
+            let prompt = TextPrompt::new(suggestion);
+            self.path_prompt = Some(PathPrompt { question, reason, prompt });
         }
-        if library.export_requests() != self.export_requests {
-            self.export_requests = library.export_requests();
+        if library.export_requests != self.export_requests {
+            self.export_requests = library.export_requests;
             if self.selection.places().len() == 0 {
                 let text = "Select what to export in the library first.".to_owned();
                 self.sent.push(Command::Notify(text));
@@ -180,8 +186,8 @@ impl LibraryPanel {
         }
         let palette = theme::of(ui);
         let edge = if has_keyboard { palette.accent } else { palette.field_hovered };
-        let edge = if library.is_drop_near() { palette.accent } else { edge };
-        let stroke = egui::Stroke::new(if library.is_drop_near() { 3.0 } else { 1.0 }, edge);
+        let edge = if library.is_drop_near { palette.accent } else { edge };
+        let stroke = egui::Stroke::new(if library.is_drop_near { 3.0 } else { 1.0 }, edge);
         ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside);
         let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(2.0)));
         self.rows(&mut inside, library, has_keyboard);
@@ -190,7 +196,8 @@ impl LibraryPanel {
     fn rows(&mut self, ui: &mut egui::Ui, library: &Library, has_keyboard: bool) {
         let rows = self.order.rows();
         if rows.is_empty() {
-            let text = match (library.problem(), library.is_listed(), self.search.is_empty()) {
+            let text = match (library.problem.as_deref(), library.is_listed, self.search.is_empty())
+            {
                 (Some(problem), ..) => problem,
                 (_, false, _) => "Loading…",
                 (_, true, true) => "There are no saves yet.",
@@ -199,7 +206,7 @@ impl LibraryPanel {
             ui.add_space(theme::GAP);
             return explain(ui, text);
         }
-        let items = library.items();
+        let items = &library.items;
         let row_of = |place: &SavePlace| rows.iter().position(|row| items[*row].place() == place);
         ui.spacing_mut().item_spacing.y = 0.0;
         let view = ui.available_height();
@@ -260,7 +267,7 @@ impl LibraryPanel {
             let held = ui.input(|input| input.modifiers);
             if held.shift {
                 let rows = self.order.rows();
-                self.selection.extend(place, rows.iter().map(|row| library.items()[*row].place()));
+                self.selection.extend(place, rows.iter().map(|row| library.items[*row].place()));
             } else if held.command {
                 self.selection.toggle(place);
             } else {
@@ -289,7 +296,7 @@ impl LibraryPanel {
 
     /// Recomputes the actions only after a change, because many saves may be selected.
     fn update_actions(&mut self, library: &Library) {
-        let wanted = Some((self.selection.changes(), library.revision()));
+        let wanted = Some((self.selection.changes, library.revision));
         if self.actions.0 != wanted {
             self.actions = (wanted, actions(library, &self.chosen(library)));
         }
@@ -316,10 +323,10 @@ impl LibraryPanel {
 
     /// Draws the details of the selection and its actions.
     fn footer(&mut self, ui: &mut egui::Ui, library: &Library) {
-        let (shown, all) = (self.order.rows().len(), library.items().len());
+        let (shown, all) = (self.order.rows().len(), library.items.len());
         let found =
             if shown == all { format!("{all} saves") } else { format!("{shown} of {all} saves") };
-        let reading = match library.unread() {
+        let reading = match library.unread {
             0 => String::new(),
             unread => format!(", {unread} not read yet"),
         };

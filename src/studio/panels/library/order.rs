@@ -10,8 +10,8 @@ use crate::studio::state::library::{Library, LibraryItem};
 pub enum SortKey {
     /// Name of the save.
     Name,
-    /// Fitness of a champion, or best fitness of a run.
-    Fitness,
+    /// Part of the way to the landing that a champion, or the best of a run, covered.
+    Way,
     /// Name of the preset of a champion or run.
     Preset,
     /// Generation of a champion, or number of generations of a run.
@@ -22,14 +22,13 @@ pub enum SortKey {
 
 impl SortKey {
     /// All sort keys, in the order of the columns.
-    pub const ALL: [Self; 5] =
-        [Self::Name, Self::Fitness, Self::Preset, Self::Generation, Self::Date];
+    pub const ALL: [Self; 5] = [Self::Name, Self::Way, Self::Preset, Self::Generation, Self::Date];
 
     /// Returns the title of the column.
     pub fn name(self) -> &'static str {
         match self {
             Self::Name => "Name",
-            Self::Fitness => "Fitness",
+            Self::Way => "Way",
             Self::Preset => "Preset",
             Self::Generation => "Generation",
             Self::Date => "Date",
@@ -54,11 +53,11 @@ impl Default for SortOrder {
 }
 
 impl SortOrder {
-    /// Sorts by a key in its default direction: names and presets ascending; fitness, generation and date descending.
+    /// Sorts by a key in its default direction: names and presets ascending; way, generation and date descending.
     pub fn by(key: SortKey) -> Self {
         Self {
             key,
-            is_descending: matches!(key, SortKey::Fitness | SortKey::Generation | SortKey::Date),
+            is_descending: matches!(key, SortKey::Way | SortKey::Generation | SortKey::Date),
         }
     }
 
@@ -81,15 +80,15 @@ impl SortOrder {
             }
         }
         let turned = |order: Ordering| if self.is_descending { order.reverse() } else { order };
-        let by_name = || a.sorted_as().cmp(b.sorted_as());
+        let by_name = || a.sorted_as.cmp(&b.sorted_as);
         let by_key = match self.key {
             SortKey::Name => turned(by_name()),
-            SortKey::Fitness => known(a.fitness(), b.fitness(), |a, b| turned(a.total_cmp(b))),
+            SortKey::Way => known(a.way(), b.way(), |a, b| turned(a.total_cmp(b))),
             SortKey::Preset => known(a.preset_title(), b.preset_title(), |a, b| turned(a.cmp(b))),
             SortKey::Generation => known(a.generation(), b.generation(), |a, b| turned(a.cmp(b))),
             SortKey::Date => {
                 let date =
-                    |item: &LibraryItem| Some(item.entry().modified).filter(|at| !at.is_zero());
+                    |item: &LibraryItem| Some(item.entry.modified).filter(|at| !at.is_zero());
                 known(date(a), date(b), |a, b| turned(a.cmp(b)))
             }
         };
@@ -122,22 +121,22 @@ impl SortedItems {
     /// seconds.
     pub fn update(&mut self, library: &Library, search: &str, sort: SortOrder, now_s: f64) -> bool {
         let input_now = SortInput {
-            listings: library.listings(),
-            sortings: library.sortings(),
+            listings: library.listings,
+            sortings: library.sortings,
             search: search.to_lowercase(),
             sort,
         };
         let is_current = self.input.as_ref().is_some_and(|input| {
             let only_read_on =
                 SortInput { sortings: input_now.sortings, ..input.clone() } == input_now;
-            let is_young = library.unread() > 0 && now_s - self.sorted_at_s < MIN_SORT_INTERVAL_S;
+            let is_young = library.unread > 0 && now_s - self.sorted_at_s < MIN_SORT_INTERVAL_S;
             *input == input_now || (only_read_on && is_young)
         });
         if is_current {
             return false;
         }
         let words: Vec<&str> = input_now.search.split_whitespace().collect();
-        let items = library.items();
+        let items = &library.items;
         // If only a few entries have changed, the existing rows are nearly sorted, and sorting them takes linear time.
         let are_same = self.input.as_ref().is_some_and(|of| of.listings == input_now.listings);
         let mut rows: Vec<usize> = if are_same && self.rows.len() == items.len() {
@@ -174,7 +173,7 @@ mod tests {
     fn names(library: &Library, search: &str, sort: SortOrder) -> Vec<String> {
         let mut order = SortedItems::default();
         order.update(library, search, sort, 0.0);
-        order.rows().iter().map(|row| library.items()[*row].name().to_owned()).collect()
+        order.rows().iter().map(|row| library.items[*row].name().to_owned()).collect()
     }
 
     #[test]
@@ -182,10 +181,10 @@ mod tests {
         let (_folder, library) = library();
         let by_name = names(&library, "", SortOrder::by(SortKey::Name));
         assert_eq!(by_name[..3], ["Broken", "by-heart", "climber"]);
-        let best = names(&library, "", SortOrder::by(SortKey::Fitness));
-        let worst = names(&library, "", SortOrder::by(SortKey::Fitness).reversed());
+        let best = names(&library, "", SortOrder::by(SortKey::Way));
+        let worst = names(&library, "", SortOrder::by(SortKey::Way).reversed());
         assert_eq!(best[..2], ["by-heart", "climber"], "of equals the first by name");
-        assert_eq!(worst[0], "twister", "a share of the way, not metres");
+        assert_eq!(worst[..2], ["first-climber", "learner"], "3 steps, and 14.22 m");
         assert_eq!((best.last(), worst.last()), (by_name.first(), by_name.first()));
         assert_eq!(
             names(&library, "", SortOrder::default())[0],

@@ -75,7 +75,7 @@ pub fn name_rect(rect: Rect) -> Rect {
     if rect.width() >= theme::COLUMNS_WIDTH {
         return column(rect, SortKey::Name);
     }
-    // The field covers the name and the fitness, but not the second line.
+    // The field covers the name and the way, but not the second line.
     let text = text_rect(rect);
     text.with_min_y(rect.top() + 1.0).with_max_y(rect.center().y)
 }
@@ -106,8 +106,8 @@ fn narrow(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     let [above, below] = [text.with_max_y(text.center().y), text.with_min_y(text.center().y)];
     let weak = weak(ui, style);
     let palette = theme::of(ui);
-    let fitness = write(ui, above, Align::Max, &item.fitness_text(), palette.text, false);
-    let name = above.with_max_x(above.right() - fitness - theme::GAP);
+    let way = write(ui, above, Align::Max, &item.way_text(" of the way"), palette.text, false);
+    let name = above.with_max_x(above.right() - way - theme::GAP);
     write(ui, name, Align::Min, item.name(), palette.text, false);
     if let Some(words) = item.problem_words() {
         write(ui, below, Align::Min, words, problem_color(ui, style), true);
@@ -124,11 +124,11 @@ fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     let weak = weak(ui, style);
     write(ui, column(rect, SortKey::Name), Align::Min, item.name(), palette.text, false);
     if let Some(words) = item.problem_words() {
-        let rest = column(rect, SortKey::Fitness).union(column(rect, SortKey::Generation));
+        let rest = column(rect, SortKey::Way).union(column(rect, SortKey::Generation));
         write(ui, rest, Align::Min, words, problem_color(ui, style), false);
     }
     for (key, text, color) in [
-        (SortKey::Fitness, item.fitness_text(), palette.text),
+        (SortKey::Way, item.way_text(""), palette.text),
         (SortKey::Preset, item.preset_title().unwrap_or_default(), weak),
         (SortKey::Generation, item.generation_text(), weak),
         (SortKey::Date, item.date_text(), weak),

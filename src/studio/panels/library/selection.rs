@@ -12,7 +12,8 @@ pub struct ChosenSaves {
     cursor: Option<SavePlace>,
     /// Row at which a range of selected rows starts.
     anchor: Option<SavePlace>,
-    changes: u64,
+    /// Counter that every change of the selection increments.
+    pub changes: u64,
 }
 
 impl ChosenSaves {
@@ -29,11 +30,6 @@ impl ChosenSaves {
     /// Returns the row from which keys move the cursor.
     pub fn cursor(&self) -> Option<&SavePlace> {
         self.cursor.as_ref()
-    }
-
-    /// Returns a counter that every change of the selection increments.
-    pub fn changes(&self) -> u64 {
-        self.changes
     }
 
     /// Selects one save only.

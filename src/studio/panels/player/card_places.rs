@@ -8,6 +8,8 @@ use crate::studio::ui::theme;
 const GAP: f32 = theme::GAP;
 /// Distance of a new place from the limbs, in points, so that the card need not move again soon.
 const FROM_LIMBS: f32 = theme::GAP * 1.5;
+/// Weight of the selected limb's area, so large that any other limbs are covered before it.
+const SELECTED: f32 = 1.0e6;
 /// Minimum width of messages, in points.
 const LEAST_MESSAGES: f32 = 200.0;
 
@@ -19,7 +21,7 @@ pub(super) struct CardRoom<'a> {
     pub taken: &'a [Rect],
     /// Area of the selected limb, if it is in view.
     pub selected: Option<Rect>,
-    /// Areas of all limbs on the stage.
+    /// Areas of all limbs on the stage, and of the gate.
     pub all: &'a [Rect],
     /// Corner of the area that is chosen among equally good places.
     pub corner: Align2,
@@ -27,47 +29,35 @@ pub(super) struct CardRoom<'a> {
 
 impl CardRoom<'_> {
     /// Returns a place for a card of this size that covers neither the selected limb nor, if possible, any other limb.
-    /// If several places are equally good, the one nearest to the preferred corner is chosen. A card at `now` is not moved
-    /// without need.
-    pub fn place(&self, size: Vec2, now: Option<Rect>) -> Rect {
-        let candidates = self.candidates(size);
-        let default = self.corner.align_size_within_rect(size, self.room);
-        // The size of the card may have changed since.
-        let distance = |place: &Rect, now: Rect| {
-            let corners = [place.min - now.min, place.max - now.max];
-            corners.into_iter().map(Vec2::length).fold(f32::INFINITY, f32::min)
-        };
-        let as_now = now.and_then(|now| {
-            let nearest = candidates.iter().copied();
-            let nearest = nearest.min_by(|a, b| distance(a, now).total_cmp(&distance(b, now)))?;
-            (distance(&nearest, now) < GAP).then_some(nearest)
-        });
-        if let Some(as_now) = as_now.filter(|place| self.covered(place, 0.0) == (0.0, 0.0)) {
-            return as_now;
-        }
+    /// If several places are equally good, the one nearest to the preferred corner is chosen.
+    pub fn place(&self, size: Vec2) -> Rect {
         let cost = |place: &Rect| self.covered(place, FROM_LIMBS);
-        let is_less = |a: (f32, f32), b: (f32, f32)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
-        let best = candidates.iter().copied().min_by(|a, b| is_less(cost(a), cost(b)));
-        match (as_now, best) {
-            // The card moves only to a much better place.
-            (Some(as_now), Some(best)) if !self.is_much_better(&best, &as_now) => as_now,
-            (_, Some(best)) => best,
-            (_, None) => default,
-        }
+        let best = self.candidates(size).into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        best.unwrap_or_else(|| self.corner.align_size_within_rect(size, self.room))
     }
 
-    fn is_much_better(&self, place: &Rect, now: &Rect) -> bool {
-        let (ours, theirs) = (self.covered(place, 0.0), self.covered(now, 0.0));
-        ours.0 < theirs.0 || (ours.0 == theirs.0 && ours.1 < theirs.1 / 2.0)
+    /// Returns the place of a card of this size that is nearest to the card's place `now`; `None` if the card must move. The size of the card
+    /// may have changed.
+    pub fn as_at(&self, size: Vec2, now: Rect) -> Option<Rect> {
+        let distance =
+            |place: &Rect| (place.min - now.min).length().min((place.max - now.max).length());
+        let candidates = self.candidates(size).into_iter();
+        let nearest = candidates.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        nearest.filter(|place| distance(place) < GAP)
     }
 
-    /// Returns the areas of the selected limb and of all limbs that a card would cover, in square points.
-    fn covered(&self, place: &Rect, margin: f32) -> (f32, f32) {
+    /// Returns whether a card would cover much less at `place` than at `now`.
+    pub fn is_much_better(&self, place: &Rect, now: &Rect) -> bool {
+        self.covered(place, 0.0) < self.covered(now, 0.0) / 2.0
+    }
+
+    /// Returns the area of the limbs that a card would cover, in square points. That of the selected limb counts [`SELECTED`] times.
+    fn covered(&self, place: &Rect, margin: f32) -> f32 {
         let of = |limb: &Rect| {
             let common = place.expand(margin).intersect(*limb);
             if common.is_positive() { common.area() } else { 0.0 }
         };
-        (self.selected.as_ref().map_or(0.0, of), self.all.iter().map(of).sum())
+        self.all.iter().map(of).sum::<f32>() + self.selected.as_ref().map_or(0.0, of) * SELECTED
     }
 
     /// Returns the places at the left and the right edge that cover no other card, the preferred ones first.
@@ -170,7 +160,7 @@ mod tests {
                 let mut pulled = limbs.clone();
                 pulled[selected] =
                     Rect::from_center_size(pos2(x as f32, y as f32), vec2(46.0, 42.0));
-                let place = around(&pulled, selected).place(CARD, None);
+                let place = around(&pulled, selected).place(CARD);
                 let selected = pulled[selected];
                 assert!(!place.intersects(selected), "{place} covers {selected}");
                 assert!(STAGE.contains_rect(place) && !place.intersects(BAR), "{place}");
@@ -182,18 +172,16 @@ mod tests {
     fn the_card_covers_no_limb_where_there_is_room_and_stays_while_it_does_not() {
         let limbs = snake();
         let small = vec2(310.0, 160.0);
-        let lower_right = around(&limbs, 0).place(small, None);
+        let lower_right = around(&limbs, 0).place(small);
         assert_eq!(lower_right.max, STAGE.shrink(12.0).max);
         assert!(limbs.iter().all(|limb| !limb.intersects(lower_right)));
         let upper_left = rect(397.0, 84.0, 707.0, 244.0);
         let down = limbs.iter().map(|limb| limb.translate(vec2(60.0, 100.0))).collect::<Vec<_>>();
-        assert_eq!(
-            around(&down, 0).place(small, Some(upper_left)),
-            upper_left,
-            "it covers nothing"
-        );
-        let covered = around(&limbs, 0).place(small, Some(upper_left));
-        assert_eq!(covered, lower_right, "it would cover a limb");
+        for (limbs, moves) in [(&down, false), (&limbs, true)] {
+            let room = around(limbs, 0);
+            assert_eq!(room.as_at(small, upper_left.translate(vec2(1.0, 2.0))), Some(upper_left));
+            assert_eq!(room.is_much_better(&room.place(small), &upper_left), moves);
+        }
     }
 
     #[test]

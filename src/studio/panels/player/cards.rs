@@ -12,6 +12,7 @@ use super::stage_card::{CardStates, CardTable, StageCard};
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, StageCommand, WindowCommand};
+use crate::studio::panels::champions::FOLLOW_COMMAND;
 use crate::studio::panels::help::menu::IsOn;
 use crate::studio::panels::on_stage::OnStage;
 use crate::studio::scene::way_back::{Excursion, WayBack};
@@ -88,15 +89,18 @@ pub(crate) fn around_stage(
         });
     });
     let bar = bar.response.rect;
-    let of_lane = |lane: &Lane| on_stage.limbs_in_window(context, lane);
+    let view = on_stage.view(context);
+    let limb_of = |lane: &Lane, limb: usize| view.as_ref()?.limb(lane, limb);
     let seen = lanes.iter().filter(|lane| !lane.is_ghost);
-    let limbs = seen.flat_map(|lane| of_lane(lane)).flatten().collect();
+    let limbs = seen.flat_map(|lane| (0..lane.body.limbs()).map(|limb| limb_of(lane, limb)));
+    let gate = view.as_ref().and_then(|view| view.gate(focused));
+    let kept_free = limbs.flatten().chain(gate).collect();
     let taken = std::iter::once(bar).chain(situation.tour).collect();
-    let mut table = CardTable { context, room, taken, limbs, states };
+    let mut table = CardTable { context, room, taken, kept_free, states };
     // With one lane, the stairs rise from the lower left to the upper right, so the sky at the upper left is free.
     let card = |name, title: &str, occasion: String, corner| {
         let title = title.to_owned();
-        StageCard { name, title, occasion, corner, least_width: 0.0 }
+        StageCard { name, title, occasion, corner }
     };
     let small = |name| card(name, "", String::new(), egui::Align2::LEFT_TOP);
     if let Some(lesson) = situation.lesson {
@@ -108,7 +112,7 @@ pub(crate) fn around_stage(
     let generation = |number: u32| {
         card("generation", &format!("Generation {number}"), String::new(), egui::Align2::LEFT_TOP)
     };
-    let (mode, following) = (&*on_stage.mode, &on_stage.following);
+    let (mode, following) = (&*on_stage.mode, &*on_stage.following);
     let ranking = |ui: &mut egui::Ui| {
         let (focus, time_s) = (focused.number, on_stage.playback.time_s());
         let leaves = (is_narrow, on_stage.way_back.can_leave());
@@ -119,6 +123,7 @@ pub(crate) fn around_stage(
         StageMode::WhatIf { .. } => table.card(&board("What if"), None, ranking),
         StageMode::Generation { number, .. } => table.card(&generation(*number), None, |ui| {
             if let Some(best) = lanes.first() {
+                let following = (following, (situation.is_on)(&FOLLOW_COMMAND));
                 generation_card(ui, mode, following, best, lanes.len(), commands);
             }
         }),
@@ -144,9 +149,8 @@ pub(crate) fn around_stage(
         let size = CardSize::for_stage(egui::vec2(stage.width(), room.bottom() - bar.bottom()));
         let corner = egui::Align2::RIGHT_BOTTOM;
         let title = limb_title(focused, limb);
-        let (occasion, least_width) = (title.clone(), size.width());
-        let card = StageCard { name: "limb", title, occasion, corner, least_width };
-        let selected = of_lane(focused).get(limb).copied().flatten();
+        let card = card("limb", &title, title.clone(), corner);
+        let selected = limb_of(focused, limb);
         let is_playing = on_stage.playback.is_playing;
         table.card(&card, selected, |ui| limb_card(ui, focused, limb, is_playing, size))
     });

@@ -3,19 +3,20 @@
 use bevy_egui::egui;
 
 use crate::studio::commands::{Command, PlanCommand, PlayerCommand, StageCommand};
-use crate::studio::panels::champions::{FOLLOW, FOLLOW_COMMAND};
+use crate::studio::panels::champions::follow_box;
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::following::Following;
-use crate::studio::ui::buttons::{CommandButton, command_box};
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::{explain, title_text};
 
 /// Draws the card of the generation on the stage. `best` is the lane of the best snake, `shown` the number of lanes.
+/// `follows` is the state of the check box for following evolution, if it is offered.
 pub(crate) fn generation_card(
     ui: &mut egui::Ui,
     mode: &StageMode,
-    following: &Following,
+    (following, follows): (&Following, Option<bool>),
     best: &Lane,
     shown: usize,
     commands: &mut Vec<Command>,
@@ -27,10 +28,13 @@ pub(crate) fn generation_card(
         explain(ui, &format!("Story, part {part} of {parts}"));
     }
     ui.horizontal(|ui| {
-        command_box(ui, following.follows_evolution(), FOLLOW, FOLLOW_COMMAND, commands);
+        follow_box(ui, follows, commands);
         let hint = "Show only the best snake of this generation";
         let single = Command::Stage(StageCommand::Single);
         CommandButton::new("Only the best", hint, single).show(ui, commands);
+        let hint = "Race it against copies that each lack one joint or one motion: the less far a copy gets, the more the climb needs what it lacks";
+        let why = Command::Stage(StageCommand::RaceKnockOuts);
+        CommandButton::new("Why does it climb?", hint, why).show(ui, commands);
     });
     let champion = best.staged.champion();
     if champion.evaluation.is_on_landing(&champion.trial.stairs) {
@@ -38,18 +42,18 @@ pub(crate) fn generation_card(
     }
 }
 
-/// Draws large buttons for what to try after a landing, until one of them is used or they are closed. They come back
-/// with the next run.
+/// Draws large buttons for what to try after a landing, until they are closed. They come back with the next run.
 fn after_landing(ui: &mut egui::Ui, run: ChampionSource, commands: &mut Vec<Command>) {
     let id = egui::Id::new("after the landing");
     if ui.data(|data| data.get_temp(id)) == Some(run) {
         return;
     }
     ui.separator();
-    let mut is_done = false;
     ui.horizontal(|ui| {
         ui.label(title_text("It has landed. Try next:"));
-        is_done |= ui.small_button("Close").clicked();
+        if ui.small_button("Close").clicked() {
+            ui.data_mut(|data| data.insert_temp(id, run));
+        }
     });
     let friction = "trial.surface.friction";
     for (label, hint, command) in [
@@ -71,10 +75,7 @@ fn after_landing(ui: &mut egui::Ui, run: ChampionSource, commands: &mut Vec<Comm
     ] {
         let button = egui::Button::new(egui::RichText::new(label).strong());
         let button = button.min_size(LARGE_BUTTON);
-        is_done |= CommandButton::of(button, hint, command).show(ui, commands);
-    }
-    if is_done {
-        ui.data_mut(|data| data.insert_temp(id, run));
+        CommandButton::of(button, hint, command).show(ui, commands);
     }
 }
 
@@ -116,7 +117,10 @@ mod tests {
         let race = Command::Stage(StageCommand::RaceGenerations);
         assert_eq!(clicked(&mut panel, "Race the generations"), [race]);
         panel.run();
-        assert!(!shows(&panel, "On ice!"), "the hint was taken");
+        assert!(shows(&panel, "On ice!"), "the user may come back from the race");
+        clicked(&mut panel, "Close");
+        panel.run();
+        assert!(!shows(&panel, "On ice!"));
     }
 
     #[test]

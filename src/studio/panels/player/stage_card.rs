@@ -9,10 +9,11 @@ use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::title_text;
 use crate::studio::ui::theme;
 
-/// Cards that the user folded or closed since the start of the program.
+/// Cards that the user folded or closed since the start of the program, and the rest of each card in its place.
 #[derive(Debug, Default)]
 pub(crate) struct CardStates {
     folded: BTreeSet<&'static str>,
+    rests: BTreeMap<&'static str, CardRest>,
     /// Closed cards, each with the occasion for which it was closed. Another occasion brings the card back.
     closed: BTreeMap<&'static str, String>,
 }
@@ -29,6 +30,49 @@ impl CardStates {
     }
 }
 
+/// Distance from the pointer to a card, in points, within which the card stays in its place.
+const REACH: f32 = theme::GAP * 6.0;
+/// Time after which the pointer would be at a card with its present velocity, in seconds, so that the card stays in its place.
+const AHEAD_S: f32 = 0.4;
+/// Time for which a card stays in its place after the pointer was near it, in seconds.
+const USED_S: f64 = 3.0;
+/// Time for which a card covers a snake or the gate before it moves, in seconds.
+const COVERS_S: f64 = 1.5;
+
+/// Rest of a card in its place.
+#[derive(Debug, Default)]
+struct CardRest {
+    /// Last time at which the pointer was near the card, in seconds.
+    used_s: Option<f64>,
+    /// Time since which the card covers something and another place would be better, in seconds. Minus infinity for a new card, which
+    /// moves at once.
+    covers_since_s: Option<f64>,
+}
+
+impl CardRest {
+    /// Returns whether a card stays in its place at the time `now_s`. `is_used` tells whether the pointer is near the card, `covers` whether
+    /// another place would be better, and `is_urgent` whether the card covers the selected limb.
+    fn lasts(&mut self, now_s: f64, is_used: bool, covers: bool, is_urgent: bool) -> bool {
+        self.used_s = if is_used { Some(now_s) } else { self.used_s };
+        let since_s = self.covers_since_s.filter(|_| covers).unwrap_or(now_s);
+        self.covers_since_s = covers.then_some(since_s);
+        let was_used = self.used_s.is_some_and(|used_s| now_s < used_s + USED_S);
+        let stays = if is_urgent { is_used } else { was_used || now_s < since_s + COVERS_S };
+        !covers || (stays && since_s.is_finite())
+    }
+}
+
+/// Returns whether the pointer is near a card or approaches it, and does not drag something else.
+fn is_used(context: &egui::Context, card: egui::Rect) -> bool {
+    let reach = card.expand(REACH);
+    context.input(|input| {
+        let pointer = &input.pointer;
+        let drags_other = pointer.press_origin().is_some_and(|from| !reach.contains(from));
+        let at = pointer.latest_pos().filter(|_| !drags_other);
+        at.is_some_and(|at| reach.contains(at) || reach.contains(at + pointer.velocity() * AHEAD_S))
+    })
+}
+
 /// A card over the stage.
 pub(super) struct StageCard {
     /// Name of the card, from which egui's ID is derived.
@@ -39,8 +83,6 @@ pub(super) struct StageCard {
     pub occasion: String,
     /// Corner of the stage at which the card is placed if it covers no snake there.
     pub corner: egui::Align2,
-    /// Minimum width of the contents, in points, until the card was drawn once.
-    pub least_width: f32,
 }
 
 /// The stage with the cards that were placed so far.
@@ -50,8 +92,8 @@ pub(super) struct CardTable<'a> {
     pub room: egui::Rect,
     /// Areas of the cards that were placed so far, in points.
     pub taken: Vec<egui::Rect>,
-    /// Areas of all limbs on the stage, in points.
-    pub limbs: Vec<egui::Rect>,
+    /// Areas of all limbs on the stage and of the gate, in points.
+    pub kept_free: Vec<egui::Rect>,
     pub states: &'a mut CardStates,
 }
 
@@ -94,12 +136,28 @@ impl CardTable<'_> {
         content: impl FnOnce(&mut egui::Ui),
     ) -> egui::Rect {
         let id = egui::Id::new(card.name);
-        let drawn = self.context.memory(|memory| memory.area_rect(id));
-        // Before the first frame, the height of the card is unknown.
-        let size = drawn.map_or(egui::vec2(card.least_width, 0.0), |rect| rect.size());
-        let (room, taken, all) = (self.room, &self.taken, &self.limbs);
+        let layer = egui::LayerId::new(egui::Order::Middle, id);
+        let (drawn, is_shown) = self
+            .context
+            .memory(|memory| (memory.area_rect(id), memory.areas().visible_last_frame(&layer)));
+        // Before the first frame, which egui does not show, the size of the card is unknown.
+        let size = drawn.map_or(egui::Vec2::ZERO, |rect| rect.size());
+        let (room, taken, all) = (self.room, &self.taken, &self.kept_free);
         let places = CardRoom { room, taken, selected, all, corner: card.corner };
-        let at = places.place(size, drawn);
+        let best = places.place(size);
+        let now = drawn.filter(|_| is_shown).and_then(|now| places.as_at(size, now));
+        let rest = self.states.rests.entry(card.name).or_default();
+        let lasts = |now: &egui::Rect| {
+            let now_s = self.context.input(|input| input.time);
+            let is_urgent = selected.is_some_and(|limb| limb.intersects(*now));
+            let covers = places.is_much_better(&best, now);
+            rest.lasts(now_s, is_used(self.context, *now), covers, is_urgent)
+        };
+        let at = now.filter(lasts).unwrap_or_else(|| {
+            let covers_since_s = (!is_shown).then_some(f64::NEG_INFINITY);
+            *rest = CardRest { covers_since_s, used_s: None };
+            best
+        });
         let palette = theme::of_context(self.context);
         let shown =
             egui::Area::new(id).fixed_pos(at.min).constrain_to(room).show(self.context, |ui| {
@@ -156,14 +214,13 @@ mod tests {
             |ui, (states, occasion): &mut (CardStates, String)| {
                 let context = ui.ctx().clone();
                 let room = context.content_rect().shrink(12.0);
-                let (taken, limbs) = (Vec::new(), Vec::new());
-                let mut table = CardTable { context: &context, room, taken, limbs, states };
+                let (taken, kept_free) = (Vec::new(), Vec::new());
+                let mut table = CardTable { context: &context, room, taken, kept_free, states };
                 let card = StageCard {
                     name: "board",
                     title: "Race".to_owned(),
                     occasion: occasion.clone(),
                     corner: egui::Align2::LEFT_TOP,
-                    least_width: 0.0,
                 };
                 table.card(&card, None, |ui| {
                     ui.label("content");
@@ -188,5 +245,56 @@ mod tests {
         harness.state_mut().0.open_all();
         harness.run();
         harness.get_by_label("content");
+    }
+
+    #[test]
+    fn a_card_moves_after_it_covered_something_for_long_but_not_while_it_is_used() {
+        // Frames: time in seconds, whether the pointer is near, whether another place is better, whether that is urgent, whether it stays.
+        let frames = [
+            (0.0, false, false, false, true),
+            (1.0, false, true, false, true),
+            (2.4, false, true, false, true),
+            (2.6, false, true, false, false),
+            // In its new place, it begins anew.
+            (2.7, false, true, false, true),
+            (3.0, false, false, false, true),
+            (4.3, false, true, false, true),
+            (5.7, true, true, false, true),
+            (8.6, false, true, false, true),
+            (8.8, false, true, false, false),
+            // A selected limb is uncovered at once, unless the pointer is on the card.
+            (9.0, false, true, true, false),
+            (9.1, true, true, true, true),
+            (9.2, false, true, true, false),
+        ];
+        let mut rest = CardRest::default();
+        for (now_s, is_used, covers, is_urgent, stays) in frames {
+            assert_eq!(rest.lasts(now_s, is_used, covers, is_urgent), stays, "at {now_s} s");
+            rest = if stays { rest } else { CardRest::default() };
+        }
+        rest.covers_since_s = Some(f64::NEG_INFINITY);
+        assert!(!rest.lasts(9.3, true, true, false), "a new card, whose size was unknown");
+    }
+
+    #[test]
+    fn a_pointer_that_is_near_a_card_or_comes_to_it_uses_it_and_one_that_drags_a_snake_does_not() {
+        let card = egui::Rect::from_min_size(egui::pos2(400.0, 300.0), egui::vec2(200.0, 100.0));
+        let used_after = |presses: bool, ways: &[f32]| {
+            let (context, mut is_used_now) = (egui::Context::default(), false);
+            for (frame, x) in ways.iter().enumerate() {
+                let (time, pos) = (Some(frame as f64 * 0.02), egui::pos2(*x, 350.0));
+                let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+                let press = egui::Event::PointerButton { pos, button, pressed: true, modifiers };
+                let presses = presses && frame == 0;
+                let mut events = vec![egui::Event::PointerMoved(pos)];
+                events.extend(presses.then_some(press));
+                let input = egui::RawInput { time, events, ..Default::default() };
+                let _ = context.run_ui(input, |ui| is_used_now = is_used(ui.ctx(), card));
+            }
+            is_used_now
+        };
+        assert!(!used_after(false, &[150.0]) && used_after(false, &[380.0]));
+        assert!(used_after(false, &[150.0, 166.0, 182.0, 198.0, 214.0, 230.0]), "it approaches");
+        assert!(!used_after(true, &[150.0, 450.0]), "it drags something else");
     }
 }

@@ -84,13 +84,17 @@ impl EvolutionPanel {
         let status = run.status();
         let is_finished = status == RunStatus::Finished;
         let differs = run.next_run_differs();
-        let (label, start) = match status {
-            RunStatus::Running => ("Pause", RunCommand::Pause),
-            RunStatus::Ready => ("Start", RunCommand::Start),
-            RunStatus::Paused | RunStatus::Finished => ("Continue", RunCommand::Start),
+        let (longer, hint) = (run.extension_in_words(), "Evolve in the background, or pause");
+        let first = match status {
+            RunStatus::Running => ("Pause", hint, RunCommand::Pause),
+            RunStatus::Ready => ("Start", hint, RunCommand::Start),
+            RunStatus::Paused => ("Continue", hint, RunCommand::Start),
+            RunStatus::Finished => (longer.as_str(), "Evolve this run further", RunCommand::Extend),
         };
+        let single = "Finish one generation, then pause";
+        let single = ("One generation", single, RunCommand::SingleGeneration);
         let wrong = Some("Correct the invalid value below first").filter(|_| is_wrong);
-        let over = Some("The run is finished; \"New run\" starts another").filter(|_| is_finished);
+        let shown = if is_finished { 1 } else { 2 };
         let wide = egui::vec2(theme::GAP * 10.0, 0.0);
         let button = |ui: &egui::Ui, label: &str, is_first: bool| match is_first {
             true => accent_button(ui, label).min_size(wide),
@@ -101,16 +105,15 @@ impl EvolutionPanel {
             false => "Start a run with the next seed; the current run stays saved",
         };
         ui.horizontal(|ui| {
-            let single = "Finish one generation, then pause";
-            for (label, hint, refusal, command, is_first) in [
-                (label, "Evolve in the background, or pause", over, start, !is_finished),
-                ("One generation", single, over, RunCommand::SingleGeneration, false),
-                ("New run", new_hint, wrong, RunCommand::New, is_finished && !is_wrong),
-            ] {
-                CommandButton::of(button(ui, label, is_first), hint, Command::Run(command))
-                    .unless(refusal)
-                    .show(ui, pressed);
+            for (index, (label, hint, command)) in
+                [first, single].into_iter().take(shown).enumerate()
+            {
+                let button = button(ui, label, index == 0 && !is_finished);
+                CommandButton::of(button, hint, Command::Run(command)).show(ui, pressed);
             }
+            let button = button(ui, "New run", is_finished && !is_wrong);
+            let new = CommandButton::of(button, new_hint, Command::Run(RunCommand::New));
+            new.unless(wrong).show(ui, pressed);
         });
     }
 
@@ -134,6 +137,11 @@ impl EvolutionPanel {
         founder(ui, run, commands);
         changes(ui, run);
         next_run(ui, run);
+        if let Some(hash) = run.hash_in_words() {
+            let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
+                        on every computer with an x86-64 processor";
+            ui.label(weak(ui, hash)).on_hover_text(hint);
+        }
         self.strategy(ui);
         self.controller(ui);
         self.sheet.send(commands);
@@ -257,7 +265,7 @@ const MAX_LISTED_CHANGES: usize = 12;
 
 /// Draws the button that starts the experiment of the report or, if that is the next run, one of the standard climb.
 fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-    let (label, preset, hint) = if run.next_preset() == REPORT {
+    let (label, preset, hint) = if run.next_plan().preset == REPORT {
         ("Run the standard climb", CLIMB, "Start a run that climbs to the landing")
     } else {
         (

@@ -1,4 +1,4 @@
-//! Progress of a run: generations, hash, speed, remaining time and disqualifications.
+//! Progress of a run: generations, speed, remaining time and disqualifications.
 
 use bevy_egui::egui;
 
@@ -19,7 +19,6 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let generations = run.settings().evolution.generations;
     let finished = run.reports().len();
     let (text, share) = match run.status() {
-        // The number of evaluations is fixed, so larger generations reduce the number of generations.
         RunStatus::Finished if finished < generations as usize => {
             (finished_early(finished, generations, run.plan_now.budget()), 1.0)
         }
@@ -50,11 +49,6 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     };
     ui.add(egui::ProgressBar::new(share).text(inside).fill(theme::of(ui).accent_soft))
         .on_hover_text(hint);
-    if let Some(hash) = run.run_hash {
-        let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
-                    on every computer with an x86-64 processor";
-        ui.label(weak(ui, format!("Run hash {hash:016x}"))).on_hover_text(hint);
-    }
     let evaluations_per_s = evaluations_per_s(run.reports());
     let evaluations_left = evaluations_left(run, done);
     // This line is always present, so that the layout does not move when the first generation is finished.
@@ -85,10 +79,12 @@ fn evaluated(done: u32, all: u32, population: u32) -> String {
     format!("{done} of {all}{new} snakes")
 }
 
-/// Describes a run that has fewer generations than planned, because some were larger, such as the first of CMA-ES.
+/// Describes a run that ended after fewer generations than planned. The number of evaluations is limited, too, and some generations were
+/// larger than planned, such as the first of CMA-ES.
 fn finished_early(finished: usize, planned: u32, budget: u64) -> String {
     format!(
-        "Finished after {finished} of {planned} generations: the first ones were larger and used up the run's {} snakes",
+        "Finished after {finished} generations: the run may try {} snakes, and too few are left for another one. \
+         {planned} generations were planned, but some had more snakes than usual",
         with_thousands(budget)
     )
 }
@@ -192,10 +188,11 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_finished_early_says_why_in_one_sentence() {
+    fn a_run_that_finished_early_says_what_ended_it_and_why_before_the_planned_number() {
         assert_eq!(
             finished_early(57, 60, 6000),
-            "Finished after 57 of 60 generations: the first ones were larger and used up the run's 6,000 snakes"
+            "Finished after 57 generations: the run may try 6,000 snakes, and too few are left for another one. \
+             60 generations were planned, but some had more snakes than usual"
         );
     }
 

@@ -1,9 +1,10 @@
 //! Tests of the run panel.
 
 use super::*;
-use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
-use crate::studio::panels::testing::{Sent, press, set, shows, type_into};
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, every_section};
+use crate::studio::panels::testing::{self, Sent, press, set, shows, type_into};
 use crate::studio::state::current_run::prepared_run as run;
+use crate::studio::ui::notifications::Notices;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::{HalvingSettings, StrategyKind};
@@ -29,6 +30,21 @@ fn each_button_sends_its_command() {
         ("New run", Command::Run(RunCommand::New)),
     ] {
         assert_eq!(sent(&run, |harness| harness.get_by_label(label).click()), [command]);
+    }
+}
+
+#[test]
+fn a_finished_run_offers_more_generations_and_a_new_run() {
+    let mut run = run();
+    run.run_hash = Some(1);
+    for (label, command) in
+        [("Continue for 6 generations", RunCommand::Extend), ("New run", RunCommand::New)]
+    {
+        let sent = sent(&run, |harness| {
+            assert!(!shows(harness, "One generation"), "there is none left");
+            harness.get_by_label(label).click();
+        });
+        assert_eq!(sent, [Command::Run(command)]);
     }
 }
 
@@ -77,8 +93,7 @@ fn a_new_run_is_disabled_while_a_value_is_invalid() {
     let sent = sent(&run, |harness| {
         type_into(harness, "Population", "a");
         assert!(shows(harness, "Population is \"a\"; allowed: 1 to"));
-        harness.get_by_label("New run").click();
-        harness.run();
+        click(harness, "New run");
     });
     assert_eq!(sent, []);
 }
@@ -88,8 +103,7 @@ fn a_typed_seed_is_sent_before_the_command_of_a_button() {
     let run = run();
     let sent = sent(&run, |harness| {
         type_into(harness, "Seed", "9");
-        harness.get_by_label("Start").click();
-        harness.run();
+        click(harness, "Start");
     });
     assert_eq!(sent, [Command::Plan(PlanCommand::SetSeed(9)), Command::Run(RunCommand::Start)]);
 }
@@ -129,9 +143,8 @@ fn the_selected_strategy_shows_its_settings_and_the_others_are_reachable() {
     let is_shown = |run: &CurrentRun, clicks: &[&str], label: &str| {
         let mut is_shown = false;
         sent(run, |harness| {
-            for click in clicks {
-                harness.get_by_label(click).click();
-                harness.run();
+            for label in clicks {
+                click(harness, label);
             }
             is_shown = harness.query_all_by_label(label).next().is_some();
         });
@@ -190,9 +203,28 @@ fn the_first_view_has_the_main_settings_and_the_others_are_below_a_fold() {
         assert!(harness.query_all_by_label_contains(shown).next().is_some(), "{shown}");
     }
     assert!(!shows(&harness, "Seed") && !shows(&harness, "Strategy"));
-    harness.get_by_label(HOW_IT_LEARNS).click();
-    harness.run();
+    click(&mut harness, HOW_IT_LEARNS);
     assert!(shows(&harness, "Seed") && shows(&harness, "Strategy"));
+}
+
+#[test]
+fn the_hash_of_a_finished_run_is_told_below_the_fold_and_by_a_command() {
+    let mut run = run();
+    run.run_hash = Some(0xc0ffee);
+    let hash = "Run hash 0000000000c0ffee";
+    let mut panel = EvolutionPanel::default();
+    let mut harness =
+        testing::panel([400.0, 1600.0], |ui, commands| panel.ui(ui, &run, |_, _| {}, commands));
+    assert!(!shows(&harness, hash));
+    testing::clicked(&mut harness, HOW_IT_LEARNS);
+    harness.run();
+    assert!(shows(&harness, hash));
+    drop(harness);
+    let mut notices = Notices::default();
+    run.apply(&RunCommand::ShowHash, &mut notices).expect("finished");
+    assert_eq!(notices.last(), Some(hash));
+    run.run_hash = None;
+    run.apply(&RunCommand::ShowHash, &mut notices).expect_err("there is none yet");
 }
 
 #[test]
@@ -237,12 +269,10 @@ fn at_every_width_nothing_is_wider_than_the_panel() {
         );
         harness.run();
         for title in ["Other strategies", "Torques", "Waves and gaits", "Random snakes"] {
-            harness.get_by_label(title).click();
-            harness.run();
+            click(&mut harness, title);
         }
         for kind in &StrategyKind::ALL[1..5] {
-            harness.get_by_label(kind.title()).click();
-            harness.run();
+            click(&mut harness, kind.title());
         }
         assert_nothing_is_wider_than(&harness, width);
         // Each section shows its settings when it is unfolded.

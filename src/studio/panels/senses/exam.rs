@@ -25,7 +25,7 @@ pub(super) fn exam(
     ui.add_space(theme::GAP / 2.0);
     let name = title_text("Exam on unseen stairs");
     let header = egui::CollapsingHeader::new(name).id_salt("exam").default_open(true);
-    let hint = "How often the snake lands on 100 staircases, nearly all unlike its own";
+    let hint = "How many of 100 staircases the snake climbs, nearly all unlike its own";
     folded(ui, header, hint, |ui| {
         let staged = &lane.staged;
         match exams.of(staged.champion()) {

@@ -63,7 +63,7 @@ impl Sheet {
         self.drawn_in = frame;
         self.takes_changes = run.is_under_way().then(|| run.takes_changes());
         if !self.values.are_of(run) {
-            if self.values.preset_name != run.next_preset() {
+            if self.values.preset_name != run.next_plan().preset {
                 self.kept.clear();
             }
             self.values = Arc::new(Values::of(run));

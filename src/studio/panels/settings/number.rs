@@ -261,7 +261,7 @@ fn number_name(
 
 /// Adds space for the numbers below a slider's marks.
 fn make_room_for_numbers(ui: &mut egui::Ui, range: &NumberRange) {
-    if range.slider.is_some() && range.logarithmic_from.is_some() {
+    if range.slider.is_some() {
         ui.add_space(NUMBERS_HEIGHT);
     }
 }

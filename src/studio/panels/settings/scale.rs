@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use super::values::rounded;
 use crate::studio::ui::theme;
 use snakes_core::schema::NumberRange;
 
@@ -107,7 +108,7 @@ impl Scale {
         values.take_while(|value| *value <= self.most + step * 1.0e-3).collect()
     }
 
-    /// Draws the marks below the rail of a slider at `rect`, with numbers on a logarithmic scale.
+    /// Draws the marks below the rail of a slider at `rect`, with as many numbers as there is room for.
     pub fn paint(&self, ui: &egui::Ui, rect: egui::Rect) {
         if !ui.is_rect_visible(rect) {
             return;
@@ -126,9 +127,9 @@ impl Scale {
         let mut numbers: Vec<egui::Rect> = Vec::new();
         // The ends come first, so that they have their numbers even if there is no room for all.
         let numbered = marks.first().into_iter().chain(marks.last()).chain(&marks);
-        for value in numbered.filter(|_| self.logarithmic_from.is_some()) {
+        for value in numbered {
             let font = egui::FontId::proportional(NUMBER_SIZE);
-            let galley = ui.painter().layout_no_wrap(value.to_string(), font, color);
+            let galley = ui.painter().layout_no_wrap(rounded(*value), font, color);
             let size = galley.size();
             let most_left = (rect.right() - size.x).max(rect.left());
             let left = (x_of(*value) - size.x / 2.0).clamp(rect.left(), most_left);
@@ -172,15 +173,6 @@ mod tests {
     }
 
     #[test]
-    fn a_logarithmic_scale_has_a_numbered_mark_at_zero_and_at_each_decade() {
-        let numbers =
-            |scale: Scale| -> Vec<String> { scale.marks().iter().map(f32::to_string).collect() };
-        assert_eq!(numbers(scale(0.0, 10.0, Some(0.01))), ["0", "0.01", "0.1", "1", "10"]);
-        assert_eq!(numbers(scale(0.05, 5.0, Some(0.05))), ["0.05", "0.1", "1", "5"]);
-        assert_eq!(numbers(scale(0.0, 0.1, Some(1.0e-6))).last().map(String::as_str), Some("0.1"));
-    }
-
-    #[test]
     fn the_pointer_reaches_zero_and_keys_leave_it() {
         let slip = scale(0.0, 1.0, Some(0.001));
         assert_eq!(slip.settled(0.0005, 0.4, true), 0.0);
@@ -200,6 +192,25 @@ mod tests {
         let degrees: Vec<f32> =
             shares(angle).into_iter().map(|share| (share * 171.88).round()).collect();
         assert_eq!(degrees, [0.0, 45.0, 90.0, 135.0]);
+    }
+
+    #[test]
+    fn a_linear_scale_has_round_numbers_and_a_logarithmic_one_has_zero_and_each_decade() {
+        let rail = egui::Rect::from_min_size(egui::pos2(10.0, 10.0), egui::vec2(260.0, 18.0));
+        for (scale, expected) in [
+            (scale(0.0, 2.0, None), &["0", "2", "0.5", "1", "1.5"][..]),
+            (scale(0.0, 10.0, Some(0.01)), &["0", "10", "0.01", "0.1", "1"]),
+            (scale(0.05, 5.0, Some(0.05)), &["0.05", "5", "0.1", "1"]),
+            (scale(0.0, 0.1, Some(1.0e-6)), &["0", "0.1"]),
+        ] {
+            let context = egui::Context::default();
+            let output = context.run_ui(egui::RawInput::default(), |ui| scale.paint(ui, rail));
+            let texts = output.shapes.iter().filter_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) => Some(text.galley.text()),
+                _ => None,
+            });
+            assert_eq!(texts.take(expected.len()).collect::<Vec<_>>(), expected);
+        }
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub(super) fn preset_choice(
     run: &CurrentRun,
     commands: &mut Vec<Command>,
 ) {
-    let (presets, chosen) = (&run.context.presets, run.next_preset());
+    let (presets, chosen) = (&run.context.presets, run.next_plan().preset.as_str());
     ui.horizontal_wrapped(|ui| {
         ui.label("Preset");
         let mut picked = None;
@@ -144,7 +144,7 @@ mod tests {
             let mut panel = panel(&run);
             clicked(&mut panel, "Save as preset…");
             assert!(panel.get_by_label("Name").is_focused());
-            let suggestion = run.context.presets.name_for_copy(run.next_preset());
+            let suggestion = run.context.presets.name_for_copy(&run.next_plan().preset);
             assert!(suggestion.starts_with("my-"), "{suggestion}");
             assert_eq!(panel.get_by_label("Name").value(), Some(suggestion.clone()));
             press(&mut panel, key);

@@ -82,8 +82,8 @@ const LINES: [ReadoutLine; 6] = [
     ReadoutLine {
         name: "Grip used",
         term: "friction cone",
-        hint: "Share of the friction that is used: sideways force divided by friction times the force pressing down. Mean \
-               of all contacts in the last 0.25 s. At 100 % everything that touches slides",
+        hint: "Share of the possible friction that is used: force along the surface, divided by the coefficient of \
+               friction times the force onto it. Mean of all contacts in the last 0.25 s. At 100 % everything that touches slides",
         draw: |column, ui| column.grip(ui),
         explain: |column, ui| column.explain_limbs(ui),
     },

@@ -1,7 +1,7 @@
 //! Tests of the Change panel: sliders, resets, the search, and the alignment of columns.
 
 use super::*;
-use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, every_section};
+use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, every_section};
 use crate::studio::panels::testing::{Sent, set, shows, type_into};
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::undo::UndoDirection;
@@ -185,8 +185,7 @@ fn columns_align_and_fit_at_every_panel_width() {
     for width in [300.0, theme::PANEL_WIDTH, 459.0, 480.0, 600.0, 900.0] {
         sent_at(&run, width, &UndoHistory::default(), |harness| {
             for title in [ADVANCED, "Body", "Repeated trials", "Disqualification"] {
-                harness.get_by_label(title).click();
-                harness.run();
+                click(harness, title);
             }
             let rect = |label: &str| harness.get_by_role_and_label(Role::Slider, label).rect();
             let one = rect("Friction");

@@ -37,7 +37,9 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
                     notices
                         .info(format!("The run continues after generation {}.", last.generation));
                 }
-                behind.iter().for_each(|report| run.note_milestone(report));
+                // A finished run that continues has noted its milestones before, some with all their snakes.
+                let known = run.reports.len();
+                behind.iter().skip(known).for_each(|report| run.note_milestone(report));
                 run.reports = behind;
             }
             RunEvent::Refused(problem) => {
@@ -64,7 +66,13 @@ fn take_in(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
                 // Changes that were requested too late apply only to the next run.
                 run.pending.clear();
                 run.context.set_run_folder(None);
-                notices.important("The run is finished; \"New run\" starts another.".to_owned());
+                let mut listed = run.others.runs.iter().flatten();
+                let listed = listed.find(|of| of.run.folder == run.source.folder);
+                notices.important(format!(
+                    "{} is finished: \"{}\" goes on with it, \"New run\" starts another.",
+                    listed.map_or("The run", |of| &of.name),
+                    run.extension_in_words()
+                ));
             }
             RunEvent::Untrusted(reason) => {
                 notices.problem(format!(
@@ -226,6 +234,28 @@ mod tests {
         act(&mut app, |run| run.set_field("evolution.population", "4"));
         let run = wait_until(&mut app, |run| run.plan_now.changes.made().len() == 1);
         assert_eq!(run.plan_now.budget(), 6 + 4 + 4);
+    }
+
+    #[test]
+    fn a_finished_run_continues_for_as_many_generations_as_it_began_with() {
+        let (_folder, mut app) = paused_studio();
+        act(&mut app, |run| {
+            assert!(run.extend().is_err(), "it is not finished");
+            run.start()
+        });
+        for generations in [6, 9] {
+            let hash = finished(&mut app).run_hash;
+            act(&mut app, |run| {
+                run.extend()?;
+                assert_eq!((run.status(), run.run_hash), (RunStatus::Running, None));
+                Ok(())
+            });
+            let run = finished(&mut app);
+            assert_eq!((run.reports().len(), run.number()), (generations, 0));
+            assert_ne!(run.run_hash, hash);
+            assert!(!run.next_run_differs(), "the next run has as many");
+            assert!(run.milestones.is_sorted_by(|a, b| a.generation < b.generation));
+        }
     }
 
     #[test]

@@ -10,6 +10,9 @@ use snakes_core::evolve::{
 use snakes_core::schema::{Setting, SettingValue, list};
 use snakes_lab::run::THREADS_RANGE;
 
+/// Full dotted name of the number of generations.
+const GENERATIONS: &str = "evolution.generations";
+
 impl CurrentRun {
     /// Returns whether a run is in progress, running or paused.
     pub fn is_under_way(&self) -> bool {
@@ -51,6 +54,36 @@ impl CurrentRun {
         }
         self.pending.push(change);
         Ok(())
+    }
+
+    /// Returns the label of the button that calls [`Self::extend`]: "Continue for 200 generations".
+    pub fn extension_in_words(&self) -> String {
+        match self.source.plan.settings.evolution.generations {
+            1 => "Continue for 1 generation".to_owned(),
+            several => format!("Continue for {several} generations"),
+        }
+    }
+
+    /// Continues a finished run for as many generations as it had when it began. The next run gets the same number, unless its settings
+    /// differ already.
+    ///
+    /// # Errors
+    /// The run is not finished, more generations are not allowed, or no thread can be started.
+    pub fn extend(&mut self) -> Result<(), String> {
+        if self.status() != RunStatus::Finished {
+            return Err("Only a finished run can be continued for more generations.".to_owned());
+        }
+        let [now, more] =
+            [self.settings(), &self.source.plan.settings].map(|of| of.evolution.generations);
+        let change = (GENERATIONS.to_owned(), SettingValue::Whole(now + more));
+        let longer = with_value(self.settings(), GENERATIONS, &change.1);
+        let longer = longer.map_err(|error| error.to_string())?;
+        if !self.next_run_differs() {
+            self.plan_next.settings = longer;
+        }
+        self.pending.push(change);
+        (self.run_hash, self.before) = (None, self.background.take());
+        self.start()
     }
 
     /// Returns the settings of the current run with its pending changes.

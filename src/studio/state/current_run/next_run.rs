@@ -19,11 +19,6 @@ impl CurrentRun {
         &self.plan_next
     }
 
-    /// Returns the name of the next run's preset.
-    pub fn next_preset(&self) -> &str {
-        &self.plan_next.preset
-    }
-
     /// Returns whether the next run's seed, preset, founder or settings differ from those of the current run with its
     /// pending changes.
     pub fn next_run_differs(&self) -> bool {
@@ -103,7 +98,7 @@ impl CurrentRun {
 
     /// Stores the next run's stairs among the user's own.
     pub fn store_stairs(&mut self, name: &str) -> Result<(), String> {
-        let about = format!("Your own stairs, made in the world of {}.", self.next_preset());
+        let about = format!("Your own stairs, made in the world of {}.", self.next_plan().preset);
         let stairs = self.next_settings().trial.stairs.clone();
         let named = NamedStairs { name: name.to_owned(), about, stairs };
         self.context.saves.store_own(&named).map_err(|error| error.to_string())?;
@@ -113,7 +108,7 @@ impl CurrentRun {
 
     /// Returns the unchanged settings of the next run's preset, if they are known.
     pub fn preset_settings(&self) -> Option<&Settings> {
-        self.settings_of(self.next_preset())
+        self.settings_of(&self.plan_next.preset)
     }
 
     /// Describes the preset of the current run: "climb", or "climb, changed" if the run has other settings.
@@ -123,7 +118,7 @@ impl CurrentRun {
 
     /// Describes the preset of the next run, like [`Self::preset_in_words`].
     pub fn next_preset_in_words(&self) -> String {
-        self.in_words(self.next_preset(), self.next_settings())
+        self.in_words(&self.plan_next.preset, self.next_settings())
     }
 
     fn in_words(&self, preset: &str, settings: &Settings) -> String {

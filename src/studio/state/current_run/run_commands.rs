@@ -26,6 +26,7 @@ impl CurrentRun {
             RunCommand::Start => self.start(),
             RunCommand::Pause => self.pause(),
             RunCommand::SingleGeneration => self.single_generation(),
+            RunCommand::Extend => self.extend(),
             RunCommand::New => self.begin_next(),
             RunCommand::Reset => {
                 let (plan, finished) = (self.source.plan.clone(), self.reports.len());
@@ -43,6 +44,11 @@ impl CurrentRun {
             }
             RunCommand::Continue(folder) => self.go_on_with(folder),
             RunCommand::SetThreads(threads) => self.set_threads(*threads),
+            RunCommand::ShowHash => {
+                notices
+                    .info(self.hash_in_words().ok_or("A run has its hash when it is finished.")?);
+                Ok(())
+            }
             RunCommand::ListRuns => self.list_runs(),
             RunCommand::Compare(folder) => self.others.toggle(folder),
             RunCommand::ExportChart(chart) => {

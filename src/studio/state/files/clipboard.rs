@@ -64,19 +64,13 @@ impl CopyTask {
 }
 
 fn copy(clipboard: &mut Option<Clipboard>, copied: &Copied) -> Result<(), String> {
-    let picture = match copied {
-        Copied::Picture(path) => Some(rgba(path)?),
-        Copied::Path(_) => None,
-    };
     let clipboard = match clipboard {
         Some(clipboard) => clipboard,
         None => clipboard.insert(Clipboard::new().map_err(|error| error.to_string())?),
     };
-    match (copied, picture) {
-        (_, Some(picture)) => clipboard.set_image(picture),
-        (Copied::Picture(path) | Copied::Path(path), None) => {
-            clipboard.set_text(path.to_string_lossy())
-        }
+    match copied {
+        Copied::Picture(path) => clipboard.set_image(rgba(path)?),
+        Copied::Path(path) => clipboard.set_text(path.to_string_lossy()),
     }
     .map_err(|error| error.to_string())
 }

@@ -53,7 +53,7 @@ fn a_file_is_opened_on_the_stage_without_being_imported_and_is_remembered() {
     let show = tried.apply(&open).expect("read").expect("shown");
     assert_eq!(show.champions[0].name(), "mine");
     assert_eq!(tried.files.recent.0, paths);
-    assert!(!tried.library.folder().exists(), "nothing was copied");
+    assert!(!tried.library.saves.path().exists(), "nothing was copied");
     std::fs::remove_file(&tried.champion).expect("removed");
     let error = tried.apply(&open).expect_err("gone");
     assert!(error.contains("mine.ron: cannot be read"), "{error}");
@@ -68,7 +68,7 @@ fn without_a_system_dialog_the_library_asks_for_the_path_and_says_why() {
     let open = Command::Window(WindowCommand::OpenPanel(PanelKind::Library));
     assert_eq!(commands, [open]);
     let expected = (FileQuestion::Import, "No portal.".to_owned());
-    assert_eq!(tried.library.unanswered(), (1, Some(&expected)));
+    assert_eq!(tried.library.unanswered, (1, Some(expected)));
     let cancelled = answer_to(FileQuestion::Import, Ok(Vec::new()), &mut tried.library);
     assert_eq!(cancelled, []);
     let chosen = vec![tried.champion.clone()];

@@ -15,25 +15,27 @@ use snakes_core::score::evaluate;
 
 use super::lesson::{Lesson, Side};
 
-/// Explanation why a snake that ends further does not always have greater fitness.
-pub(crate) const FITNESS_OF_THE_LANDED: &str = "Fitness is the distance, but it stops counting at 26.00 m, where the \
-    whole snake is on the landing.";
-
-/// Order of the lessons in the panel, by their indices: first those that need no knowledge, last those about programming.
-pub(crate) const LESSON_ORDER: [usize; LESSONS.len()] = [0, 3, 5, 6, 8, 2, 7, 1, 4];
-
-/// All lessons. Only findings and conclusions may state a result, because the other texts are shown before the experiments.
+/// All lessons in the order of their numbers: first those that need no knowledge, last those about programming. Only findings and
+/// conclusions may state a result, because the other texts are shown before the experiments.
 pub(crate) const LESSONS: [Lesson; 9] = [
     report::FRICTION,
-    report::FRAME_RATE,
-    report::JOINT_LIMITS,
     report::MUTATIONS,
-    report::REPETITION,
     senses::LEARNED_BY_HEART,
     senses::BLINDFOLD,
-    bodies::PROTECTION,
     ladder::LADDER,
+    report::JOINT_LIMITS,
+    bodies::PROTECTION,
+    report::FRAME_RATE,
+    report::REPETITION,
 ];
+
+/// Returns the present title of a lesson that an earlier version may have stored by another one.
+pub(crate) fn present_title(stored: String) -> String {
+    match stored.as_str() {
+        "Why bodies need protection" => bodies::PROTECTION.title.to_owned(),
+        _ => stored,
+    }
+}
 
 /// Returns a built-in champion in each of these worlds or bodies.
 pub(super) fn champions(

@@ -10,7 +10,7 @@ pub(crate) struct Lesson {
     pub title: &'static str,
     /// Question that the lesson answers.
     pub question: &'static str,
-    /// Experience with the question in the original experiment.
+    /// Experience with the question in the report's experiment.
     pub story: &'static str,
     /// Instruction to the reader.
     pub to_try: &'static str,
@@ -26,54 +26,24 @@ pub(crate) struct Lesson {
 
 /// Scene of a lesson.
 #[derive(Debug)]
-pub(crate) enum LessonScene {
-    /// A champion in several worlds or bodies.
-    Lanes {
-        /// Label of the scene's button.
-        label: &'static str,
-        /// Name of a built-in champion.
-        champion: &'static str,
-        /// Question that the reader answers by a guess before the race; `None` if the scene is no experiment.
-        question: Option<Question>,
-        /// Worlds or bodies to compare, one per lane.
-        lanes: &'static [Side],
-    },
-    /// Small runs whose best snakes race afterwards.
-    Runs {
-        /// Label of the scene's button.
-        label: &'static str,
-        /// Preset of the runs.
-        preset: &'static str,
-        /// Question that the reader answers by a guess before the runs.
-        question: Question,
-        /// Runs to compare.
-        runs: &'static [Side],
-    },
+pub(crate) struct LessonScene {
+    /// Label of the scene's button.
+    pub label: &'static str,
+    /// What the sides of the scene are.
+    pub shows: Shows,
+    /// Question that the reader answers by a guess before the experiment; `None` if the scene is no experiment.
+    pub question: Option<Question>,
+    /// Lanes or runs to compare.
+    pub sides: &'static [Side],
 }
 
-impl LessonScene {
-    /// Returns the label of the scene's button.
-    pub fn label(&self) -> &'static str {
-        match self {
-            Self::Lanes { label, .. } | Self::Runs { label, .. } => label,
-        }
-    }
-
-    /// Returns the question that the reader answers by a guess before the experiment, if any.
-    pub fn question(&self) -> Option<&Question> {
-        match self {
-            Self::Lanes { question, .. } => question.as_ref(),
-            Self::Runs { question, .. } => Some(question),
-        }
-    }
-
-    /// Returns the lanes or runs that the scene compares.
-    pub fn sides(&self) -> &'static [Side] {
-        match self {
-            Self::Lanes { lanes, .. } => lanes,
-            Self::Runs { runs, .. } => runs,
-        }
-    }
+/// What a scene shows.
+#[derive(Debug)]
+pub(crate) enum Shows {
+    /// The built-in champion of this name in several worlds or bodies, one per lane.
+    Champion(&'static str),
+    /// Small runs of the preset of this name, whose best snakes race afterwards.
+    RunsOf(&'static str),
 }
 
 /// A lane or run that a scene compares with others.
@@ -103,7 +73,7 @@ pub(super) const fn lane_of_body(name: &'static str, change: BodyChange, block: 
     Side { body_change: Some((change, block)), ..lane(name, &[]) }
 }
 
-/// Creates a run on one thread.
+/// Creates a run that computes one snake at a time.
 pub(super) const fn run(
     name: &'static str,
     seed: u64,
@@ -113,21 +83,25 @@ pub(super) const fn run(
 }
 
 /// Scene with the champion alone, without changes.
-pub(super) const AS_FOUND: LessonScene = LessonScene::Lanes {
-    label: "The original champion",
-    champion: "climber",
+pub(super) const AS_FOUND: LessonScene = LessonScene {
+    label: "A built-in champion",
+    shows: Shows::Champion("climber"),
     question: None,
-    lanes: &[lane("original", &[])],
+    sides: &[lane("original", &[])],
 };
 
-pub(super) const fn furthest(finding: &'static str) -> Question {
-    Question { text: "Which snake gets furthest?", asks: Asks::Furthest, finding }
+pub(super) const fn furthest(finding: &'static str) -> Option<Question> {
+    Some(Question { text: "Which snake gets furthest?", asks: Asks::Furthest, finding })
 }
 
-pub(super) const fn best_run(finding: &'static str) -> Question {
-    Question { text: "Which run's best snake gets further?", asks: Asks::BestRun, finding }
+pub(super) const fn best_run(finding: &'static str) -> Option<Question> {
+    Some(Question { text: "Which run's best snake gets further?", asks: Asks::BestRun, finding })
 }
 
-pub(super) const fn same_hash(finding: &'static str) -> Question {
-    Question { text: "Will both runs have the same hash?", asks: Asks::SameHash, finding }
+pub(super) const fn same_hash(finding: &'static str) -> Option<Question> {
+    Some(Question {
+        text: "Will both runs have the same hash (fingerprint of all results)?",
+        asks: Asks::SameHash,
+        finding,
+    })
 }

@@ -3,7 +3,7 @@
 use super::found::Found;
 use super::lesson::LessonScene;
 use super::plays::Plays;
-use snakes_core::score::{Evaluation, Fitness};
+use snakes_core::score::{Evaluation, Trial};
 
 /// Maximum difference of final distances that count as equal, in metres.
 pub(super) const EQUAL_M: f32 = 1.0;
@@ -43,8 +43,8 @@ pub(crate) struct Progress {
     pub has_begun: bool,
     /// Whether the result may be shown.
     pub is_revealed: bool,
-    /// Measure of the lanes' fitness.
-    pub fitness: Option<Fitness>,
+    /// Conditions of the first lane.
+    pub trial: Option<Trial>,
     /// Name of each lane, and the result of its snake.
     pub lanes: Vec<(String, Evaluation)>,
     /// Results of the runs.
@@ -65,10 +65,14 @@ pub(super) struct Truth {
 impl LessonScene {
     /// Returns the answers from which the reader chooses; none without a question.
     pub fn answers(&self) -> Vec<&'static str> {
-        let names = || self.sides().iter().map(|side| side.name);
-        match self.question().map(|question| question.asks) {
+        let names = || self.sides.iter().map(|side| side.name);
+        match self.question.as_ref().map(|question| question.asks) {
             Some(Asks::Furthest | Asks::BestRun) => {
-                names().chain(["all within 1 m of each other"]).collect()
+                let near = match self.sides {
+                    [_, _] => "both within 1 m of each other",
+                    _ => "all within 1 m of each other",
+                };
+                names().chain([near]).collect()
             }
             Some(Asks::LateBodyChanges) => names().chain(["equally often"]).collect(),
             Some(Asks::PlaybackSpeed) => vec!["no, it ends differently", "yes, in every digit"],
@@ -84,7 +88,7 @@ impl Progress {
         if !self.is_revealed {
             return None;
         }
-        let Truth { answer, words } = self.truth(scene.question()?.asks)?;
+        let Truth { answer, words } = self.truth(scene.question.as_ref()?.asks)?;
         let guessed = self.guess.and_then(|guess| scene.answers().get(guess).copied());
         Some(match guessed {
             Some(guessed) if self.guess == Some(answer) => {
@@ -160,7 +164,8 @@ fn furthest(ends: &[(&str, Option<f32>)]) -> Option<Truth> {
     let least_m = known().map(|(_, end_m)| end_m).fold(f32::MAX, f32::min);
     let all_are_healthy = known().count() == ends.len();
     Some(if all_are_healthy && most_m - least_m < EQUAL_M {
-        let words = format!("all end between {least_m:.2} m and {most_m:.2} m");
+        let all = if ends.len() == 2 { "both" } else { "all" };
+        let words = format!("{all} end between {least_m:.2} m and {most_m:.2} m");
         Truth { answer: ends.len(), words }
     } else {
         let words = format!("\"{}\" gets furthest, to {most_m:.2} m", ends[best].0);
@@ -242,7 +247,7 @@ mod tests {
 
     #[test]
     fn playbacks_are_compared_once_two_speeds_were_watched() {
-        let scene = &LESSONS[1].scenes[1];
+        let scene = &LESSONS[7].scenes[1];
         let mut of = Progress { guess: Some(1), is_revealed: true, ..Progress::default() };
         let mut play = |speed, trace_hash| {
             let end = Evaluation { trace_hash, ..Evaluation::of_fitness(26.0) };
@@ -260,15 +265,11 @@ mod tests {
     #[test]
     fn every_comparing_scene_asks_for_a_guess() {
         for lesson in &LESSONS {
-            assert!(
-                lesson.scenes.iter().any(|scene| scene.question().is_some()),
-                "{}",
-                lesson.title
-            );
+            assert!(lesson.scenes.iter().any(|scene| scene.question.is_some()), "{}", lesson.title);
             for scene in lesson.scenes {
-                let compares = scene.sides().len() > 1;
-                assert!(scene.question().is_some() || !compares, "{}", scene.label());
-                assert_eq!(scene.answers().is_empty(), scene.question().is_none());
+                let compares = scene.sides.len() > 1;
+                assert!(scene.question.is_some() || !compares, "{}", scene.label);
+                assert_eq!(scene.answers().is_empty(), scene.question.is_none());
             }
         }
     }

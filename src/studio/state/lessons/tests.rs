@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::lesson::Shows;
 use super::*;
 use crate::studio::state::current_run::prepared_run;
 use snakes_core::evolve::Champion;
@@ -13,20 +14,19 @@ use snakes_lab::run::{Experiment, LocalPool, RunControl};
 pub(super) fn result(lesson: usize, scene: usize) -> &'static Progress {
     static KNOWN: [[OnceLock<Progress>; 3]; LESSONS.len()] =
         [const { [const { OnceLock::new() }; 3] }; LESSONS.len()];
-    KNOWN[lesson][scene].get_or_init(|| match &LESSONS[lesson].scenes[scene] {
-        LessonScene::Lanes { champion, lanes, .. } => {
-            let staged = champions(champion, lanes).expect("they fit");
+    let LessonScene { shows, question, sides, .. } = &LESSONS[lesson].scenes[scene];
+    KNOWN[lesson][scene].get_or_init(|| match shows {
+        Shows::Champion(champion) => {
+            let staged = champions(champion, sides).expect("they fit");
             let of = |staged: &StagedChampion| (staged.label().to_owned(), staged.shown_result());
-            let asks = LESSONS[lesson].scenes[scene].question().map(|question| question.asks);
-            let plays = match asks {
+            let plays = match question.as_ref().map(|question| question.asks) {
                 Some(Asks::PlaybackSpeed) => played(&staged[0], &[1.0, 4.0]),
                 _ => Plays::default(),
             };
-            Progress { lanes: staged.iter().map(of).collect(), plays, ..Progress::default() }
+            let trial = Some(staged[0].trial().clone());
+            Progress { lanes: staged.iter().map(of).collect(), plays, trial, ..Progress::default() }
         }
-        LessonScene::Runs { preset, runs, .. } => {
-            Progress { runs: outcome(preset, runs), ..Progress::default() }
-        }
+        Shows::RunsOf(preset) => Progress { runs: outcome(preset, sides), ..Progress::default() },
     })
 }
 
@@ -72,10 +72,12 @@ fn ends_m(lesson: usize, scene: usize) -> Vec<f32> {
 
 /// Returns, for each lane of a scene, the number of steps that the snake climbed and whether it is on the landing.
 fn places(lesson: usize, scene: usize) -> Vec<(u32, bool)> {
-    let LessonScene::Lanes { champion, lanes, .. } = &LESSONS[lesson].scenes[scene] else {
+    let LessonScene { shows: Shows::Champion(champion), sides, .. } =
+        &LESSONS[lesson].scenes[scene]
+    else {
         panic!("no lanes")
     };
-    let staged = champions(champion, lanes).expect("they fit");
+    let staged = champions(champion, sides).expect("they fit");
     let place = |(staged, (_, of)): (&StagedChampion, &(String, Evaluation))| {
         let climbed = of.behaviour.expect("measured").steps_climbed;
         (climbed, of.is_on_landing(&staged.trial().stairs))
@@ -91,7 +93,7 @@ fn best(found: &Found) -> &Champion {
 /// Returns the right answer to a scene's question.
 fn answer(lesson: usize, scene: usize) -> &'static str {
     let shown = &LESSONS[lesson].scenes[scene];
-    let asks = shown.question().expect("a question").asks;
+    let asks = shown.question.as_ref().expect("a question").asks;
     shown.answers()[result(lesson, scene).truth(asks).expect("known").answer]
 }
 
@@ -107,12 +109,12 @@ fn the_conclusion_about_friction_is_true() {
     assert!(near.iter().all(|end| *end > landing_m), "{near:?}");
     assert!(near[0] < near[1] && near[2] < near[1], "{near:?}");
     let landed = &result(0, 1).lanes[1].1;
-    assert!(FITNESS_OF_THE_LANDED.contains(&format!("at {:.2} m,", landed.fitness)));
+    assert!(landed.fitness < landed.centre_y_m, "it does not count the whole way");
 }
 
 /// Returns the snake of the first lesson.
 fn robust() -> StagedChampion {
-    let original = [LESSONS[0].scenes[0].sides()[1].clone()];
+    let original = [LESSONS[0].scenes[0].sides[1].clone()];
     champions("robust", &original).expect("it fits").remove(0)
 }
 
@@ -132,73 +134,75 @@ fn the_smallest_friction_that_still_lands_is_the_stated_one() {
 
 #[test]
 fn the_conclusion_about_the_frame_rate_is_true() {
-    let ends = ends_m(1, 0);
+    let ends = ends_m(7, 0);
     assert!(ends[2] < ends[0] - 10.0, "{ends:?}");
-    for side in LESSONS[1].scenes[0].sides() {
+    assert_eq!(answer(7, 0), "120 physics steps/s");
+    assert_eq!(result(7, 0).lanes[1].1.fitness, 3.0, "as far as the first riser");
+    for side in LESSONS[7].scenes[0].sides {
         let staged = champions("robust", std::slice::from_ref(side)).expect("it fits").remove(0);
         let seen = evaluate(&staged.champion().genome, staged.trial());
         assert!(seen.is_on_landing(&staged.trial().stairs), "{}", side.name);
     }
-    assert_eq!(answer(1, 1), "yes, in every digit");
+    assert_eq!(answer(7, 1), "yes, in every digit");
 }
 
 #[test]
 fn the_conclusion_about_limits_is_true() {
-    let found = &result(2, 1).runs;
+    let found = &result(5, 1).runs;
     let [with, without] = &found[..] else { panic!("two runs") };
     let last = |of: &Found| of.reports.last().and_then(|report| report.statistics);
     let [most, least] = [with, without].map(|of| last(of).expect("a healthy snake").best);
     assert!(most > least + 3.0, "{most} and {least}");
     let out = |of: &Found| of.reports.iter().map(|report| report.disqualified).sum::<u32>();
     assert!(out(without) > out(with), "{} and {}", out(without), out(with));
-    assert_eq!(answer(2, 1), "with limits");
-    let (reached, said) = (best(with).reached(), "passes 2 steps beside the stairs");
+    assert_eq!(answer(5, 1), "with limits");
+    let (reached, said) = (best(with).reached(), "lies beside step 2 of the stairs");
     assert!(reached.ends_with(said), "as the finding says: {reached}");
 }
 
 #[test]
 fn the_conclusion_about_halving_is_true() {
-    let found = &result(3, 1).runs;
+    let found = &result(1, 1).runs;
     let [halved, kept] = &found[..] else { panic!("two runs") };
     let [halved, kept] = [halved, kept].map(|of| best(of).evaluation.fitness);
     assert!(kept > halved + 3.0, "{kept} and {halved}");
-    assert_eq!(answer(3, 1), "range stays large");
+    assert_eq!(answer(1, 1), "range stays large");
 }
 
 #[test]
 fn the_conclusion_about_bits_is_true() {
-    assert_eq!(answer(4, 1), "the same hash");
-    assert_eq!(answer(4, 2), "different hashes");
+    assert_eq!(answer(8, 1), "the same hash");
+    assert_eq!(answer(8, 2), "different hashes");
 }
 
 #[test]
 fn the_conclusion_about_what_was_learned_by_heart_is_true() {
-    assert_eq!(places(5, 0), [(10, true), (10, true), (5, false)], "as the finding says");
-    assert_eq!(places(5, 1), [(10, true), (10, true)]);
-    assert_eq!([answer(5, 0), answer(5, 1)], ["original", "all within 1 m of each other"]);
+    assert_eq!(places(2, 0), [(10, true), (10, true), (5, false)], "as the finding says");
+    assert_eq!(places(2, 1), [(10, true), (10, true)]);
+    assert_eq!([answer(2, 0), answer(2, 1)], ["original", "both within 1 m of each other"]);
 }
 
 #[test]
 fn the_conclusion_about_the_senses_is_true() {
-    assert_eq!(answer(6, 0), "all within 1 m of each other");
-    let sight = &result(6, 0).lanes;
+    assert_eq!(answer(3, 0), "both within 1 m of each other");
+    let sight = &result(3, 0).lanes;
     assert_eq!(sight[0].1.trace_hash, sight[1].1.trace_hash, "exactly alike");
-    assert_eq!(answer(6, 1), "original");
-    let [(all, _), (touchless, _), (dizzy, _)] = places(6, 1)[..] else { panic!("three lanes") };
+    assert_eq!(answer(3, 1), "original");
+    let [(all, _), (touchless, _), (dizzy, _)] = places(3, 1)[..] else { panic!("three lanes") };
     assert_eq!(all, 10);
     assert!(touchless + 2 < dizzy && dizzy < all, "{touchless} and {dizzy} steps");
 }
 
 #[test]
 fn the_conclusion_about_protection_is_true() {
-    assert_eq!([answer(7, 0), answer(7, 1)], ["original", "with protection"]);
-    let [original, more, less] = ends_m(7, 0)[..] else { panic!("three lanes") };
+    assert_eq!([answer(6, 0), answer(6, 1)], ["original", "with protection"]);
+    let [original, more, less] = ends_m(6, 0)[..] else { panic!("three lanes") };
     let first_riser_m = champions("tapered", &[lesson::lane("original", &[])]).expect("it fits")[0]
         .trial()
         .stairs
         .first_riser_y_m;
     assert!(original > 23.0 && more.max(less) < first_riser_m, "{original}, {more}, {less}");
-    let [with, without] = &result(7, 1).runs[..] else { panic!("two runs") };
+    let [with, without] = &result(6, 1).runs[..] else { panic!("two runs") };
     assert!(with.late_body_changes() >= 2 && without.late_body_changes() == 0);
     let fitness = |of: &Found| best(of).evaluation.fitness;
     assert!(fitness(with) < fitness(without), "as the finding says");
@@ -206,9 +210,9 @@ fn the_conclusion_about_protection_is_true() {
 
 #[test]
 fn the_conclusion_about_a_ladder_is_true() {
-    assert_eq!(places(8, 0), [(10, true), (0, false)]);
-    assert_eq!([answer(8, 0), answer(8, 1)], ["steps of 0.2 m", "by a ladder"]);
-    let [direct, ladder] = &result(8, 1).runs[..] else { panic!("two runs") };
+    assert_eq!(places(4, 0), [(10, true), (0, false)]);
+    assert_eq!([answer(4, 0), answer(4, 1)], ["steps 0.2 m high", "by a ladder"]);
+    let [direct, ladder] = &result(4, 1).runs[..] else { panic!("two runs") };
     let goal = &load_preset("house").expect("shipped").settings.trial.stairs;
     let lands = |of: &Found| best(of).evaluation.is_on_landing(goal);
     assert_eq!(best(ladder).trial.stairs, *goal, "the ladder has grown to its end");
@@ -221,12 +225,15 @@ fn the_conclusion_about_a_ladder_is_true() {
 fn every_scene_of_every_lesson_can_be_shown() {
     for lesson in &LESSONS {
         for scene in lesson.scenes {
-            match scene {
-                LessonScene::Lanes { lanes, champion, .. } => {
-                    champions(champion, lanes).expect(lesson.title);
+            match scene.shows {
+                Shows::Champion(champion) => {
+                    champions(champion, scene.sides).expect(lesson.title);
                 }
-                LessonScene::Runs { preset, runs, .. } => {
-                    runs.iter().for_each(|side| drop(plan(preset, side).expect(lesson.title)));
+                Shows::RunsOf(preset) => {
+                    scene
+                        .sides
+                        .iter()
+                        .for_each(|side| drop(plan(preset, side).expect(lesson.title)));
                 }
             }
         }
@@ -248,6 +255,11 @@ fn after_a_lesson_settings_are_as_they_were() {
     lessons.leave(&mut run, &mut history).expect("allowed");
     assert_eq!(*run.next_plan(), next);
     assert!(lessons.view().is_none());
+}
+
+#[test]
+fn a_lesson_that_was_finished_under_an_earlier_title_stays_finished() {
+    assert_eq!(present_title("Why bodies need protection".to_owned()), LESSONS[6].title);
 }
 
 /// Begins the first lesson. Returns the lessons and a prepared run.
@@ -276,7 +288,7 @@ fn a_race_waits_for_a_guess_and_starts_after_it() {
 #[test]
 fn the_fitness_of_a_snake_is_that_of_the_trial_on_the_stage() {
     // The record of this snake is the mean of four trials.
-    for (name, result) in &result(6, 1).lanes {
+    for (name, result) in &result(3, 1).lanes {
         let counted_m = result.centre_y_m.min(26.0);
         assert!((result.fitness - counted_m).abs() < 2.0, "{name}: {result:?}");
     }
@@ -305,7 +317,7 @@ fn the_result_appears_once_all_lanes_of_the_scene_were_watched_to_their_end() {
 #[test]
 fn runs_start_only_after_a_guess_and_finished_ones_are_not_repeated() {
     let (mut lessons, mut run) = first_lesson();
-    apply(&mut lessons, &mut run, LessonCommand::Begin(4));
+    apply(&mut lessons, &mut run, LessonCommand::Begin(8));
     assert!(apply(&mut lessons, &mut run, LessonCommand::ShowScene(1)).is_none());
     assert!(!lessons.view().expect("begun").is_busy && lessons.awaits_guess());
     apply(&mut lessons, &mut run, LessonCommand::Guess(0));
@@ -327,7 +339,7 @@ fn runs_start_only_after_a_guess_and_finished_ones_are_not_repeated() {
 #[test]
 fn watching_the_snake_alone_shows_no_conclusion_and_results_need_a_guess_or_the_end() {
     let (mut lessons, mut run) = first_lesson();
-    apply(&mut lessons, &mut run, LessonCommand::Begin(2));
+    apply(&mut lessons, &mut run, LessonCommand::Begin(5));
     lessons.see(&[Some("original")]);
     assert!(!lessons.view().expect("begun").shows_conclusion);
     apply(&mut lessons, &mut run, LessonCommand::Begin(0));

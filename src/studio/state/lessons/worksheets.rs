@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use super::plays::Play;
 use super::tests::result;
 use super::*;
+use snakes_core::evolve::Champion;
 use snakes_core::score::Evaluation;
 
 /// A line on which the reader writes.
@@ -24,39 +25,38 @@ fn text(index: usize) -> String {
         lesson.story
     );
     for scene in lesson.scenes {
-        let Some(question) = scene.question() else { continue };
+        let Some(question) = &scene.question else { continue };
         let answers: Vec<String> =
             scene.answers().iter().map(|answer| format!("☐ {answer}")).collect();
-        text += &format!("- {}: {} {}\n", scene.label(), question.text, answers.join(" "));
+        text += &format!("- {}: {} {}\n", scene.label, question.text, answers.join(" "));
     }
     let kept = |from: &str, to: &str| {
         let (_, rest) = lesson.worksheet.split_once(from).expect(from);
         format!("{from}{}", rest.split_once(to).expect(to).0)
     };
     text += &format!("\nBecause: {LINE}{LINE}\n\n{}\n", kept("## Try it", "\n| "));
-    text += &format!("{}\n{}", tables(index), kept("## Explain", "**For the teacher**"));
+    text += &format!("{}\n{}", tables(index), kept("## Explain", "**For the teacher"));
     let remark = match index {
-        0 => "Of the tenths, 0.5 is the smallest friction that still lands. ",
-        2 => "Each disqualified snake is one less to breed from. ",
-        3 => "Halved six times, 100 N·m become 1.6 N·m. ",
+        0 => "In tenths, 0.5 is the smallest friction that still gets it to the top. ",
+        1 => "Halved six times, 100 N·m become 1.6 N·m. ",
+        5 => "Each disqualified snake is one less to breed from. ",
         _ => "",
     };
-    text + &format!(
-        "**For the teacher** (cover before copying). {} {remark}{}\n",
-        expected(index),
-        lesson.conclusion
-    )
+    text + &format!("**For the teacher.** {} {remark}{}\n", expected(index), lesson.conclusion)
 }
 
 /// Returns the tables to fill in. Experiments with the same columns share a table.
 fn tables(index: usize) -> String {
-    let asked =
-        || LESSONS[index].scenes.iter().filter_map(|scene| Some((scene, scene.question()?.asks)));
-    let has_speeds = asked().any(|(_, asks)| asks == Asks::PlaybackSpeed);
+    let asked = || {
+        LESSONS[index]
+            .scenes
+            .iter()
+            .filter_map(|scene| Some((scene, scene.question.as_ref()?.asks)))
+    };
     let heads = |asks: Asks| -> &'static [&'static str] {
         match asks {
-            _ if has_speeds => &["Snake", "Ends at (m)", "Hash"],
-            Asks::Furthest | Asks::PlaybackSpeed => &["Snake", "Ends at (m)", "On the landing?"],
+            Asks::Furthest => &["Snake", "Ends at (m)", "On the landing?"],
+            Asks::PlaybackSpeed => &["Played at", "Ends at (m)", "Hash"],
             Asks::BestRun => {
                 &["Run", "Best fitness (m)", "Disqualified", "Where does the best end?"]
             }
@@ -69,8 +69,8 @@ fn tables(index: usize) -> String {
     let mut tables: Vec<(&[&str], Vec<&str>)> = Vec::new();
     for (scene, asks) in asked() {
         let names = match asks {
-            Asks::PlaybackSpeed => vec!["played at × 1", "played at × 4"],
-            _ => scene.sides().iter().map(|side| side.name).collect(),
+            Asks::PlaybackSpeed => vec!["× 1", "× 4"],
+            _ => scene.sides.iter().map(|side| side.name).collect(),
         };
         if tables.last().is_none_or(|(of, _)| *of != heads(asks)) {
             tables.push((heads(asks), Vec::new()));
@@ -93,14 +93,16 @@ fn tables(index: usize) -> String {
         let rows: String = names.into_iter().map(blank).collect();
         row(heads) + &row(&vec!["---"; heads.len()]) + &rows
     };
-    tables.into_iter().map(table).collect::<Vec<_>>().join("\n")
+    let stairs = &result(index, 0).trial.as_ref().expect("lanes").stairs;
+    let from_zero = format!("(m; first step at {} m)", stairs.first_riser_y_m);
+    tables.into_iter().map(table).collect::<Vec<_>>().join("\n").replace("(m)", &from_zero)
 }
 
 /// Describes the results of all experiments, for the teacher.
 fn expected(index: usize) -> String {
     let scenes = LESSONS[index].scenes.iter().enumerate();
     let asked = scenes.filter_map(|(number, scene)| {
-        let question = scene.question()?;
+        let question = scene.question.as_ref()?;
         let progress = result(index, number);
         let lane = |(name, of): &(String, Evaluation)| match of.disqualified {
             Some(reason) => format!("{name}: disqualified, {}", reason.words()),
@@ -113,9 +115,7 @@ fn expected(index: usize) -> String {
             format!("{}: {best}, {out} of {all} disqualified", found.name)
         };
         let changes = |found: &Found| {
-            let best = found
-                .best()
-                .map_or("none".to_owned(), |best| best.trial.fitness.text(best.evaluation.fitness));
+            let best = found.best().map_or("none".to_owned(), Champion::brief);
             format!("{}: {best}, {} late changes", found.name, found.late_body_changes())
         };
         let hash =
@@ -131,7 +131,7 @@ fn expected(index: usize) -> String {
             Asks::LateBodyChanges => progress.runs.iter().map(changes).collect(),
             Asks::SameHash => progress.runs.iter().map(hash).collect(),
         };
-        Some(format!("{} ({}). {}", scene.label(), results.join("; "), question.finding))
+        Some(format!("{} ({}). {}", scene.label, results.join("; "), question.finding))
     });
     asked.collect::<Vec<_>>().join(" ")
 }
@@ -175,7 +175,7 @@ fn each_worksheet_prints_on_one_page() {
     for (number, lesson) in (1..).zip(&LESSONS) {
         let lines = printed_lines(lesson.worksheet);
         assert!((20.0..=PAGE_LINES).contains(&lines), "worksheet {number} has {lines} lines");
-        let parts = ["## Predict", "## Try it", "## Explain", "**For the teacher**", "☐"];
+        let parts = ["## Predict", "## Try it", "## Explain", "**For the teacher.**", "☐"];
         for part in parts.into_iter().chain([lesson.title, lesson.question]) {
             assert!(lesson.worksheet.contains(part), "worksheet {number}: {part}");
         }

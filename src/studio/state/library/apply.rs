@@ -3,17 +3,22 @@
 use std::path::PathBuf;
 
 use super::Library;
-use super::batch_jobs::{DELETED, DUPLICATED, EXPORTED, IMPORTED};
+use super::batch_jobs::{DELETED, DUPLICATED, EXPORTED, IMPORTED, SAVED};
 use super::examination::Examination;
 use super::load::{champion_of, generation_of};
 use crate::studio::commands::library::LibraryCommand;
+use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{MAX_LANES, Show};
 use crate::studio::state::lineup::evenly_chosen;
+use crate::studio::state::shares::shared;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::{
-    SavePlace, delete, duplicate, export, import, rename, set_notes_text,
+    FileStep, SavePlace, delete, duplicate, export, import, plain_name, rename, set_notes_text,
 };
+use snakes_core::save::store_champion;
+use snakes_core::score::Recording;
+use snakes_lab::run::names::preset_title;
 use snakes_lab::run::{BackgroundTask, LibraryReader};
 
 impl Library {
@@ -58,6 +63,8 @@ impl Library {
                 let step = set_notes_text(place, text.trim()).map_err(|error| error.to_string())?;
                 self.keep(label, vec![step], history);
             }
+            // The caller saves the snake, because it knows the stage.
+            LibraryCommand::SaveSnake => {}
             LibraryCommand::Duplicate(places) => {
                 self.carry_out(DUPLICATED, places, duplicate, history, notices)?;
             }
@@ -86,6 +93,26 @@ impl Library {
             }
         }
         Ok(None)
+    }
+
+    /// Saves a snake of the stage with its recorded poses, in the background.
+    ///
+    /// # Errors
+    /// No file can hold the snake, or a long batch is in progress; the error is a sentence for the user.
+    pub fn save(&mut self, staged: &StagedChampion) -> Result<(), String> {
+        let champion = shared(staged)?;
+        self.look()?;
+        let saves = self.saves.clone();
+        self.send_out(SAVED, vec![champion], move |champion| {
+            let (label, champion) = champion();
+            let (preset, seed) = (preset_title(&champion.origin.preset), champion.origin.seed);
+            let name = plain_name(&format!("{preset} {seed}, {label}"));
+            saves.prepare()?;
+            let path = saves.free_name(&name, "ron");
+            let recording = Recording::of(&champion.genome, &champion.trial);
+            store_champion(&path, &champion, Some(&recording))?;
+            Ok(FileStep::Added { path })
+        })
     }
 
     /// Loads the champions of entries, to show them side by side, or a single one alone.
@@ -132,8 +159,9 @@ impl Library {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::staged_champion::StagedChampion;
     use crate::studio::state::library::tests::Tried;
+    use crate::studio::state::undo::UndoDirection;
+    use snakes_core::save::{load_champion, shipped_champion};
 
     #[test]
     fn a_run_that_is_not_read_yet_is_loaded_in_the_background() {
@@ -147,6 +175,30 @@ mod tests {
         let problem = tried.apply(&LibraryCommand::ShowLoaded).expect_err("gone");
         assert!(problem.contains("gone"), "{problem}");
         assert!(tried.apply(&LibraryCommand::ShowLoaded).expect("nothing").is_none());
+    }
+
+    #[test]
+    fn the_snake_on_the_stage_is_saved_in_the_world_that_is_shown_and_undone() {
+        let mut tried = Tried::new(&[]);
+        let mut champion = shipped_champion().expect("well formed").champion;
+        champion.origin.generation = 12;
+        let found = StagedChampion::from_run(&champion, 0);
+        let mut trial = champion.trial.clone();
+        trial.surface.friction = 0.25;
+        let changed = found.in_world(&trial, "friction 0.25".to_owned());
+        for (staged, trial) in [(&found, &champion.trial), (&changed, &trial)] {
+            tried.library.save(staged).expect("begun");
+            tried.wait();
+            let place = tried.library.newest.1.clone().expect("pointed out");
+            let saved = load_champion(place.path().expect("a file")).expect("readable");
+            assert_eq!((&saved.champion.trial, saved.recording.is_some()), (trial, true));
+            assert_eq!(saved.champion.genome, champion.genome);
+        }
+        let preset = preset_title(&champion.origin.preset);
+        let name = format!("{preset} {}, Generation 12-1", champion.origin.seed);
+        assert!(tried.own().contains(&name), "{:?}", tried.own());
+        (0..2).for_each(|_| tried.step(UndoDirection::Back));
+        assert_eq!(tried.own(), Vec::<String>::new());
     }
 
     #[test]

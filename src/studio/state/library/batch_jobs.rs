@@ -26,6 +26,7 @@ pub(super) struct Verb {
 pub(super) const DELETED: Verb = Verb { done: "deleted", doing: "Deleting" };
 pub(super) const DUPLICATED: Verb = Verb { done: "duplicated", doing: "Duplicating" };
 pub(super) const EXPORTED: Verb = Verb { done: "exported", doing: "Exporting" };
+pub(super) const SAVED: Verb = Verb { done: "saved", doing: "Saving" };
 pub(super) const IMPORTED: Verb = Verb { done: "imported", doing: "Importing" };
 
 /// Task of a batch.

@@ -1,16 +1,19 @@
 //! An entry of the library list: its texts and sort keys.
 
+use crate::studio::ui::decimals::in_percent;
 use snakes_core::genome::ControllerKind;
 use snakes_core::save::EntryNotes;
 use snakes_core::save::library::{
     ChampionDetails, EntryDetails, EntryProblem, LibraryEntry, RunDetails, SavePlace, Thumbnail,
 };
+use snakes_core::score::Fitness;
 use snakes_lab::run::names::{date, difference, run_name, with_title};
 
 /// An entry of the library with its contents, once they are read.
 #[derive(Debug)]
 pub struct LibraryItem {
-    entry: LibraryEntry,
+    /// Place, size and modification time of the entry.
+    pub entry: LibraryEntry,
     /// Entry after the file has changed, until the file is read again.
     awaited: Option<LibraryEntry>,
     name: String,
@@ -19,7 +22,7 @@ pub struct LibraryItem {
     /// Contents of the entry or the error of reading it; `None` until it is read.
     read: Option<Result<EntryDetails, EntryProblem>>,
     /// Name of the entry in lower case, which is its sort key.
-    sorted_as: String,
+    pub sorted_as: String,
     /// Words of the entry in lower case, which the search compares.
     words: String,
 }
@@ -51,8 +54,8 @@ impl LibraryItem {
     pub fn learn(&mut self, read: Result<EntryDetails, EntryProblem>) -> bool {
         // The words include the name, the preset and "damaged".
         let keys = |item: &Self| {
-            let fitness = item.fitness().map(f32::to_bits);
-            (item.entry.modified, fitness, item.generation(), item.words.clone())
+            let way = item.way().map(f32::to_bits);
+            (item.entry.modified, way, item.generation(), item.words.clone())
         };
         let before = keys(self);
         self.entry = self.awaited.take().unwrap_or_else(|| self.entry.clone());
@@ -110,11 +113,6 @@ impl LibraryItem {
         Some((&mut self.name, difference))
     }
 
-    /// Returns place, size and modification time of the entry.
-    pub fn entry(&self) -> &LibraryEntry {
-        &self.entry
-    }
-
     /// Returns the place of the entry.
     pub fn place(&self) -> &SavePlace {
         &self.entry.place
@@ -123,11 +121,6 @@ impl LibraryItem {
     /// Returns the user's name for the entry, or else a readable one of a run, or else the name of the file or folder.
     pub fn name(&self) -> &str {
         &self.name
-    }
-
-    /// Returns the name in lower case, which is the sort key.
-    pub fn sorted_as(&self) -> &str {
-        &self.sorted_as
     }
 
     /// Returns whether the words of the entry contain all of these lower-case words.
@@ -174,19 +167,26 @@ impl LibraryItem {
         }
     }
 
-    /// Returns the fitness of a champion, or the best fitness of a run.
-    pub fn fitness(&self) -> Option<f32> {
-        let of_run = || self.run()?.best.map(|(_, fitness)| fitness);
-        self.champion().map(|champion| champion.fitness).or_else(of_run)
+    /// Returns the part of the way from the start to the landing that a champion, or the best of a run, covered, from 0 to 1. Unlike the
+    /// fitness, it is the same measure for all entries. `None` without stairs, a result or a recording.
+    pub fn way(&self) -> Option<f32> {
+        let of_run = || self.run().and_then(|of| Some((of.rewarded, of.best?.1)));
+        let result = self.champion().map(|of| (of.rewarded, of.fitness)).or_else(of_run);
+        let ((rewarded, fitness), seen) = (result?, self.thumbnail()?);
+        let from_m = seen.way_m.first()?[0];
+        // The outline of the stairs ends with the landing's front edge, back edge and foot.
+        let landing_m = seen.stairs_m.iter().rev().nth(2)?[0];
+        let covered = match rewarded {
+            Fitness::Share => fitness,
+            of if of.is_along_y() => (fitness - from_m) / (landing_m - from_m),
+            _ => (seen.way_m.last()?[0] - from_m) / (landing_m - from_m),
+        };
+        Some(covered.clamp(0.0, 1.0))
     }
 
-    /// Returns the fitness with its unit, or an empty text if it is unknown.
-    pub fn fitness_text(&self) -> String {
-        let rewarded = self.champion().map(|of| of.rewarded).or(self.run().map(|of| of.rewarded));
-        match (self.fitness(), rewarded) {
-            (Some(fitness), Some(rewarded)) => rewarded.text(fitness),
-            _ => String::new(),
-        }
+    /// Returns the covered part of the way as text, such as "76 %" before `of_what`, or an empty text if it is unknown.
+    pub fn way_text(&self, of_what: &str) -> String {
+        self.way().map(|way| in_percent(way) + of_what).unwrap_or_default()
     }
 
     /// Returns the generation of a champion, or the number of finished generations of a run.
@@ -245,10 +245,9 @@ impl LibraryItem {
             return format!("{}, not read yet", self.name);
         }
         let kind = if self.place().run().is_some() { "run" } else { "" };
-        let (fitness, generation) = (self.fitness_text(), self.generation_text());
-        let date = self.date_text();
-        let preset = self.preset_title().unwrap_or_default();
-        let parts = [&self.name, kind, &fitness, &preset, &generation, &date];
+        let (date, generation) = (self.date_text(), self.generation_text());
+        let (way, preset) = (self.way_text(" of the way"), self.preset_title().unwrap_or_default());
+        let parts = [&self.name, kind, &way, &preset, &generation, &date];
         let said: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         said.join(", ")
     }
@@ -279,10 +278,27 @@ mod tests {
         }
         assert!(good.has_all(&["gait", "fas"]) && !good.has_all(&["gait", "slow"]));
         assert!(!good.has_all(&["damaged"]));
-        assert_eq!(good.label(), "fast, 26.00 m, Climb, generation 102, built-in");
+        assert_eq!(good.label(), "fast, 100 % of the way, Climb, generation 102, built-in");
         let bad = item(false);
         assert!(bad.has_all(&["damaged"]) && !bad.has_all(&["climb"]));
         assert_eq!(bad.label(), "fast, damaged: cut off");
+    }
+
+    #[test]
+    fn the_covered_way_is_one_measure_for_every_kind_of_fitness() {
+        for (name, of_the_way) in [
+            ("climber", "100 %"),
+            ("learner", "76 %"),
+            ("first-climber", "57 %"),
+            ("twister", "91 %"),
+        ] {
+            let place = SavePlace::Shipped(name);
+            let read = read_entry(&place).map_err(EntryProblem::from);
+            let mut item = LibraryItem::new(entry(place, EntryNotes::default()));
+            assert_eq!(item.way_text(""), "", "not read yet");
+            item.learn(read);
+            assert_eq!(item.way_text(""), of_the_way, "{name}");
+        }
     }
 
     #[test]
@@ -296,7 +312,7 @@ mod tests {
         item.learn(Err(EntryProblem::damaged("cut off")));
         item.follow(entry("Icy One", "slips at step 3"));
         assert!(item.learn(Err(EntryProblem::damaged("cut off"))), "it is sorted again");
-        assert_eq!((item.name(), item.sorted_as()), ("Icy One", "icy one"));
+        assert_eq!((item.name(), item.sorted_as.as_str()), ("Icy One", "icy one"));
         for sought in ["icy", "seed1", "slips at"] {
             assert!(item.has_all(&[sought]), "{sought}");
         }

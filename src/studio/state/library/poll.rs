@@ -179,7 +179,7 @@ mod tests {
         let listed = |day| LibraryEvent::Listed(vec![entry("a", 1), entry("b", day)]);
         let mut library = Library::of(vec![listed(2), read("a"), read("b")]);
         let state = |library: &Library| {
-            (library.listings(), library.sortings(), library.revision(), library.unread())
+            (library.listings, library.sortings, library.revision, library.unread)
         };
         let (listings, sortings, revision, unread) = state(&library);
         assert_eq!(unread, 0);
@@ -187,14 +187,14 @@ mod tests {
         assert_eq!(state(&library), (listings, sortings, revision, 1), "nothing to be seen yet");
         library.learn(read("b"));
         assert_eq!(state(&library), (listings, sortings + 1, revision + 1, 0));
-        let date = library.item(&place("b")).expect("there").entry().modified;
+        let date = library.item(&place("b")).expect("there").entry.modified;
         assert_eq!(date.as_secs(), 3 * 86_400);
         library.learn(listed(3));
         library.learn(read("a"));
         let now = (listings, sortings + 1, revision + 2, 0);
         assert_eq!(state(&library), now, "read anew, it is what it was");
         library.learn(LibraryEvent::Listed(vec![entry("b", 3)]));
-        assert_eq!(library.listings(), listings + 1);
+        assert_eq!(library.listings, listings + 1);
     }
 
     #[test]
@@ -211,13 +211,13 @@ mod tests {
         app.world_mut()
             .write_message(FileDragAndDrop::HoveredFile { window, path_buf: path("a.ron") });
         app.update();
-        assert!(app.world().resource::<Library>().is_drop_near());
+        assert!(app.world().resource::<Library>().is_drop_near);
         for name in ["a.ron", "b.ron"] {
             let drop = FileDragAndDrop::DroppedFile { window, path_buf: path(name) };
             app.world_mut().write_message(drop);
         }
         app.update();
-        assert!(!app.world().resource::<Library>().is_drop_near());
+        assert!(!app.world().resource::<Library>().is_drop_near);
         let sent: Vec<Command> =
             app.world_mut().resource_mut::<Messages<Command>>().drain().collect();
         let both = vec![path("a.ron"), path("b.ron")];

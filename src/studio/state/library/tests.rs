@@ -34,12 +34,12 @@ impl Tried {
     /// Returns the names of the entries in the folder.
     pub fn own(&mut self) -> Vec<String> {
         self.library.read_all();
-        let own = self.library.items().iter().filter(|item| item.place().path().is_some());
+        let own = self.library.items.iter().filter(|item| item.place().path().is_some());
         own.map(|item| item.name().to_owned()).collect()
     }
 
     pub fn place(&self, name: &str) -> SavePlace {
-        let item = self.library.items().iter().find(|item| item.name() == name);
+        let item = self.library.items.iter().find(|item| item.name() == name);
         item.expect("listed").place().clone()
     }
 
@@ -99,8 +99,8 @@ fn a_save_that_is_restored_under_another_name_is_reported() {
     tried.step(UndoDirection::Back);
     let said = "a restored. The name a was taken, so the new name is a 2.";
     assert_eq!(tried.notices.last(), Some(said));
-    let (count, newest) = tried.library.newest();
-    assert_eq!((count, newest.map(SavePlace::name)), (1, Some("a 2".to_owned())));
+    let (count, newest) = &tried.library.newest;
+    assert_eq!((*count, newest.as_ref().map(SavePlace::name)), (1, Some("a 2".to_owned())));
 }
 
 #[test]

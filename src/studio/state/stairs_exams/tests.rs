@@ -98,8 +98,8 @@ fn a_champion_without_stairs_or_of_another_engine_is_refused() {
 fn an_end_is_said_in_a_few_words() {
     let end = |steps, landed_s, has_landed| ExamEnd { steps, landed_s, has_landed, ..NOT_LANDED };
     for (end, words) in [
-        (end(10, Some(12.34), true), "lands after 12.3 s"),
-        (end(9, Some(12.34), false), "lands after 12.3 s, but does not stay"),
+        (end(10, Some(12.34), true), "reaches the top after 12.3 s"),
+        (end(9, Some(12.34), false), "reaches the top after 12.3 s, but does not stay"),
         (end(3, None, false), "ends on step 3"),
         (end(0, None, false), "climbs no step"),
         (ExamEnd { is_disqualified: true, ..end(0, None, false) }, "is disqualified"),

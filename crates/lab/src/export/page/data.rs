@@ -280,7 +280,7 @@ fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
         ),
     ]);
     if let Some(effort) = effort {
-        facts.push(("Energy", format!("{:.2} kJ", effort.energy_j / 1000.0)));
+        facts.push(("Energy", format!("{:.1} kJ", effort.energy_j / 1000.0)));
     }
     facts.push(("Engine", exported.loaded.engine.to_string()));
     facts.push(("Trace hash", format!("{:016x}", champion.evaluation.trace_hash)));

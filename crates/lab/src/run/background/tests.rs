@@ -25,7 +25,7 @@ fn start_after(folder: &tempfile::TempDir, before: Option<BackgroundRun>) -> Bac
     let evaluator = Arc::new(LocalPool::new(2).expect("threads"));
     let saves = SavesFolder::find(Some(folder.path()));
     let source = RunSource::in_saves(&saves, plan(), ExistingRun::Keep);
-    BackgroundRun::start(source, evaluator, before).expect("a thread")
+    BackgroundRun::start(source, evaluator, [], before).expect("a thread")
 }
 
 /// Waits for the next event of any kind.
@@ -230,7 +230,7 @@ fn progress_counts_the_current_generation_of_any_size() {
     let evaluator = Arc::new(LocalPool::new(2).expect("threads"));
     let saves = SavesFolder::find(Some(folder.path()));
     let source = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
-    let background = BackgroundRun::start(source, evaluator, None).expect("a thread");
+    let background = BackgroundRun::start(source, evaluator, [], None).expect("a thread");
     assert!(matches!(next(&background), RunEvent::Opened(_)));
     assert_eq!(background.progress(), (0, 20));
     // The first generation has only newborns; later generations have the size of the population.
@@ -319,16 +319,44 @@ fn a_run_in_its_last_generation_can_be_made_longer() {
     assert_eq!(events, 1 + 3);
 }
 
+/// Resumes a run, and returns its hash when it is finished.
+fn hash_at_end(background: &BackgroundRun) -> u64 {
+    background.resume();
+    loop {
+        if let RunEvent::Finished { run_hash } = next(background) {
+            return run_hash;
+        }
+    }
+}
+
+#[test]
+fn a_finished_run_that_is_opened_with_more_generations_has_the_bits_of_one_made_longer_in_time() {
+    let longer = || [("evolution.generations".to_owned(), SettingValue::Whole(5))];
+    let folders = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+    let in_time = start(&folders[0]);
+    for _ in 1..=2 {
+        in_time.run_single_generation();
+        assert!(matches!(next(&in_time), RunEvent::Generation(_)));
+    }
+    in_time.request_changes(longer());
+    let expected = hash_at_end(&in_time);
+    let finished = start(&folders[1]);
+    let short = hash_at_end(&finished);
+    let evaluator = Arc::new(LocalPool::new(2).expect("threads"));
+    let saves = SavesFolder::find(Some(folders[1].path()));
+    let source = RunSource::in_saves(&saves, plan(), ExistingRun::Keep);
+    let again =
+        BackgroundRun::start(source, evaluator, longer(), Some(finished)).expect("a thread");
+    assert_eq!(opened(&again).reports.len(), 3);
+    let found = hash_at_end(&again);
+    assert_eq!(found, expected);
+    assert_ne!(found, short);
+}
+
 #[test]
 fn in_the_background_a_run_has_the_same_hash() {
     let folder = tempfile::tempdir().expect("a folder");
-    let background = start(&folder);
-    background.resume();
-    let run_hash = loop {
-        if let RunEvent::Finished { run_hash } = next(&background) {
-            break run_hash;
-        }
-    };
+    let run_hash = hash_at_end(&start(&folder));
     let mut experiment = Experiment::new(plan());
     let evaluator = LocalPool::new(1).expect("threads");
     while !experiment.is_over() {

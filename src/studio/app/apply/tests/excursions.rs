@@ -34,7 +34,7 @@ fn seen(app: &mut App) -> Seen {
         ("selection", format!("{:?}", (selection.lane, selection.limb))),
         ("following", world.resource::<Following>().follows_evolution().to_string()),
         ("friction", next.trial.surface.friction.to_string()),
-        ("presenting", world.resource::<Workspace>().is_presenting().to_string()),
+        ("presenting", world.resource::<Workspace>().is_presenting.to_string()),
     ])
 }
 
@@ -140,6 +140,18 @@ fn a1_every_excursion_within_every_other_returns_to_exactly_the_scene_before() {
                 assert!(other.is_empty(), "{other:?} after {first:?} with {second:?}: {said:?}");
             }
         }
+    }
+}
+
+#[test]
+fn the_speed_that_was_set_within_an_excursion_stays_after_it() {
+    for (kind, begin, end) in excursions() {
+        let mut app = studio();
+        send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
+        enter(&mut app, &begin);
+        send(&mut app, &Command::Player(PlayerCommand::SetSpeed(0.25)));
+        send(&mut app, &end);
+        assert_eq!(app.world().resource::<Playback>().speed(), 0.25, "{kind}");
     }
 }
 

@@ -31,7 +31,7 @@ fn situations() -> [Situation; 2] {
         can_redo: true,
         ..Situation::default()
     };
-    [all, Situation { is_sharing: true, ..all }]
+    [all, Situation { is_sharing: true, is_finished: true, ..all }]
 }
 
 fn by_menus() -> Vec<Way> {

@@ -140,7 +140,7 @@ fn without_a_system_dialog_a_field_for_the_path_opens_with_the_focus_and_the_rea
 fn an_export_from_the_menu_takes_the_selection_or_asks_for_one() {
     let requested = || {
         let mut library = library();
-        library.request_export();
+        library.export_requests += 1;
         library
     };
     let mut harness = harness(requested(), [420.0, 800.0]);

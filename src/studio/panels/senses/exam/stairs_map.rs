@@ -126,7 +126,7 @@ impl<'m> StairsMap<'m> {
             ui.painter().text(egui::pos2(x, y), align, text, font, palette.text_weak);
         };
         let above = cells.top() - theme::GAP / 2.0;
-        let count = format!("{} of {} landed", self.grid.landed(), self.grid.trials());
+        let count = format!("{} of {} climbed", self.grid.landed(), self.grid.trials());
         small(cells.left(), above, egui::Align2::LEFT_BOTTOM, count);
         for (column, tread_m) in self.grid.treads_m.iter().enumerate() {
             let at = self.cell(0, column).center_bottom() + egui::vec2(0.0, theme::GAP / 4.0);
@@ -183,7 +183,7 @@ impl<'m> StairsMap<'m> {
 fn said(cell: &StairsCell) -> String {
     let StairsCell { rise_m, tread_m, trials, landed, median_steps, typical, .. } = cell;
     format!(
-        "Rise {rise_m} m, tread {tread_m} m: {landed} of {trials} landed, median {median_steps} of {} steps",
+        "Rise {rise_m} m, tread {tread_m} m: {landed} of {trials} climbed, median {median_steps} of {} steps",
         typical.stairs.steps
     )
 }
@@ -208,7 +208,7 @@ pub(super) fn legend(ui: &mut egui::Ui, grid: &StairsGrid, own: &Trial) {
     let trials = grid.cells.iter().map(|cell| cell.trials).max().unwrap_or(0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme::GAP / 2.0, theme::GAP / 2.0);
-        ui.label(weak(ui, "Landed").small());
+        ui.label(weak(ui, "Climbed").small());
         let gap = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
         let font = egui::FontId::proportional(theme::SMALL_SIZE);
         for landed in 0..=trials {

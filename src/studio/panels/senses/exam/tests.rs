@@ -72,9 +72,9 @@ fn a_cell_tells_its_landings_and_a_click_watches_it() {
     let mut section = section(staged, &exams, theme::PANEL_WIDTH);
     assert_nothing_is_wider_than(&section, theme::PANEL_WIDTH);
     for (stairs, landed) in [
-        ("Rise 0.3 m, tread 1.5 m", "5 of 5 landed, median 10 of 10 steps"),
-        ("Rise 0.6 m, tread 2 m", "2 of 5 landed, median 3 of 10 steps"),
-        ("Rise 0.7 m, tread 3 m", "1 of 5 landed, median 3 of 10 steps"),
+        ("Rise 0.3 m, tread 1.5 m", "5 of 5 climbed, median 10 of 10 steps"),
+        ("Rise 0.6 m, tread 2 m", "2 of 5 climbed, median 3 of 10 steps"),
+        ("Rise 0.7 m, tread 3 m", "1 of 5 climbed, median 3 of 10 steps"),
     ] {
         assert!(shows(&section, &format!("On other stairs. {stairs}: {landed}")), "{stairs}");
     }

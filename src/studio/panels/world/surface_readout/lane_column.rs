@@ -176,6 +176,6 @@ pub(super) fn in_joules(energy_j: f32) -> String {
     if energy_j.abs() < 999.5 {
         format!("{energy_j:.0} J")
     } else {
-        format!("{:.2} kJ", energy_j / 1000.0)
+        format!("{:.1} kJ", energy_j / 1000.0)
     }
 }

@@ -1,51 +1,50 @@
 //! The lesson about bodies that evolve with their gaits.
 
 use crate::studio::state::lessons::lesson::{
-    Lesson, LessonScene, furthest, lane, lane_of_body, run,
+    Lesson, LessonScene, Shows, furthest, lane, lane_of_body, run,
 };
 use crate::studio::state::lessons::prediction::{Asks, Question};
 use snakes_core::genome::BodyChange;
 
 /// Lesson on protection: new bodies need time for their gaits to adapt.
 pub(super) const PROTECTION: Lesson = Lesson {
-    title: "Why bodies need protection",
+    title: "What protection does for new bodies",
     question: "Why does evolution settle so soon on a body?",
     story: "Bodies can evolve with their gaits. The stage shows a snake with the gait of its body, and the same gait with \
             a block more and a block less.",
     to_try: "Guess, and watch the race. Then let bodies evolve for 24 generations of 60 snakes, twice: choosing by \
-             fitness alone, and with protection, where a snake with a new body only loses against better ones whose \
-             bodies are as new.",
+             fitness alone, and with protection, where a new body competes only with bodies just as new.",
     look_for: "How the same gait moves the three bodies. In the runs, how often the best snake has another body than the \
                best before it, and which run climbs further.",
-    conclusion: "A new body is judged with the gait of the old one, and most lose at once. Protection gives them time to \
-                 adapt their gait, at a price: in runs four times as long, 8 of 10 protected ones climbed less far.",
+    conclusion: "A new body is judged with the old gait, and most lose at once. Protection gives them time to adapt, \
+                 at a price: of 10 runs four times as long, 8 got less far with it.",
     scenes: &[
-        LessonScene::Lanes {
+        LessonScene {
             label: "A block more, a block less",
-            champion: "tapered",
-            question: Some(furthest("In another body the same gait leads nowhere.")),
-            lanes: &[
+            shows: Shows::Champion("tapered"),
+            question: furthest("In another body the same gait leads nowhere."),
+            sides: &[
                 lane("original", &[]),
                 lane_of_body("a block more", BodyChange::Duplicate, 2),
                 lane_of_body("a block less", BodyChange::Remove, 2),
             ],
         },
-        LessonScene::Runs {
+        LessonScene {
             label: "With and without protection",
-            preset: "bodies",
-            question: Question {
+            shows: Shows::RunsOf("bodies"),
+            question: Some(Question {
                 text: "In which run does the body of the best snake change more often in the second half?",
                 asks: Asks::LateBodyChanges,
                 finding: "Protected bodies go on changing. By fitness alone, the first good body stays and only its gait \
-                          improves. Other seeds may differ.",
-            },
-            runs: &[
+                          improves. Other runs may differ.",
+            }),
+            sides: &[
                 run("with protection", 1, &PROTECTED),
                 run("without protection", 1, &UNPROTECTED),
             ],
         },
     ],
-    worksheet: include_str!("../../../../../docs/worksheets/8.md"),
+    worksheet: include_str!("../../../../../docs/worksheets/7.md"),
 };
 
 /// Settings of a run that protects new bodies, small enough for a lesson.

@@ -1,6 +1,8 @@
 //! The lesson about stairs that grow with the snakes.
 
-use crate::studio::state::lessons::lesson::{Lesson, LessonScene, best_run, furthest, lane, run};
+use crate::studio::state::lessons::lesson::{
+    Lesson, LessonScene, Shows, best_run, furthest, lane, run,
+};
 
 /// Lesson on the ladder: stairs that become higher as the snakes learn.
 pub(super) const LADDER: Lesson = Lesson {
@@ -13,26 +15,26 @@ pub(super) const LADDER: Lesson = Lesson {
     look_for: "How far the same snake gets on low and on high steps. In the runs, when each line rises, and whether it gets \
                stuck.",
     conclusion: "Stairs that only some snakes climb tell good from bad, and a ladder looks for such stairs. It is not always \
-                 needed: with ten seeds, the direct way landed 7 times, and the ladder 10 times.",
+                 needed: in ten runs each, the direct way reached the top 7 times, and the ladder 10 times.",
     scenes: &[
-        LessonScene::Lanes {
+        LessonScene {
             label: "One snake, two flights",
-            champion: "climber",
-            question: Some(furthest(
-                "It lands on the lower flight, and cannot get onto the first step of the higher one.",
-            )),
-            lanes: &[lane("steps of 0.2 m", &FLIGHTS[0]), lane("steps of 0.4 m", &FLIGHTS[1])],
-        },
-        LessonScene::Runs {
-            label: "Direct and by a ladder",
-            preset: "house",
-            question: best_run(
-                "With as many simulations, the direct search has come no further than the fourth step. Other seeds may differ.",
+            shows: Shows::Champion("climber"),
+            question: furthest(
+                "It climbs the lower flight, and cannot get onto the first step of the higher one.",
             ),
-            runs: &[run("direct", 102, &DIRECT), run("by a ladder", 102, &BY_LADDER)],
+            sides: &[lane("steps 0.2 m high", &FLIGHTS[0]), lane("steps 0.4 m high", &FLIGHTS[1])],
+        },
+        LessonScene {
+            label: "Direct and by a ladder",
+            shows: Shows::RunsOf("house"),
+            question: best_run(
+                "With as many simulations, the direct search has come no further than the fourth step. Other runs may differ.",
+            ),
+            sides: &[run("direct", 102, &DIRECT), run("by a ladder", 102, &BY_LADDER)],
         },
     ],
-    worksheet: include_str!("../../../../../docs/worksheets/9.md"),
+    worksheet: include_str!("../../../../../docs/worksheets/5.md"),
 };
 
 /// Settings of the two staircases: both have shallow treads, but their rises differ.

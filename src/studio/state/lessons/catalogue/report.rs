@@ -1,7 +1,7 @@
 //! The lessons on the experiences that the authors of the report describe.
 
 use crate::studio::state::lessons::lesson::{
-    AS_FOUND, Lesson, LessonScene, Side, best_run, furthest, lane, run, same_hash,
+    AS_FOUND, Lesson, LessonScene, Shows, Side, best_run, furthest, lane, run, same_hash,
 };
 use crate::studio::state::lessons::prediction::{Asks, Question};
 
@@ -9,8 +9,9 @@ use crate::studio::state::lessons::prediction::{Asks, Question};
 pub(super) const FRICTION: Lesson = Lesson {
     title: "Friction: how much?",
     question: "How much grip do stairs need?",
-    story: "In the original experiment, the surface was tuned by eye, which took a long time. The stage shows \
-            the same snake on a surface like ice, on its own surface and on a surface like glue.",
+    story: "In the report's experiment, which this program rebuilds, the surface was tuned by eye, which took a long \
+            time. The stage shows the same snake on a surface like ice (friction 0.1), on its own surface (1) and on a \
+            surface like glue (5).",
     to_try: "Guess which snake gets furthest, then watch the race. Afterwards select the original, go back to \
              the start, open the Change panel and drag Friction: a copy of the snake starts beside it with the new value.",
     look_for: "How far each snake gets. The genome is the same in all lanes; only the surface differs.",
@@ -18,26 +19,26 @@ pub(super) const FRICTION: Lesson = Lesson {
                  any. The Change panel lets you set every property of a surface as a number and \
                  see its effect at once.",
     scenes: &[
-        LessonScene::Lanes {
+        LessonScene {
             label: "Ice, original, glue",
-            champion: "robust",
-            question: Some(furthest(
+            shows: Shows::Champion("robust"),
+            question: furthest(
                 "With too little grip the snake slips; with too much, a block catches on the edge of a step and \
                  holds the others back.",
-            )),
-            lanes: &[
+            ),
+            sides: &[
                 lane("friction 0.1", &[("surface.friction", "0.1")]),
                 lane("original", &[]),
                 lane("friction 5", &[("surface.friction", "5")]),
             ],
         },
-        LessonScene::Lanes {
+        LessonScene {
             label: "A little less, a little more",
-            champion: "robust",
-            question: Some(furthest(
+            shows: Shows::Champion("robust"),
+            question: furthest(
                 "With 0.3 less or more, the snake ends nearer, but still reaches the landing.",
-            )),
-            lanes: &[
+            ),
+            sides: &[
                 lane("friction 0.7", &[("surface.friction", "0.7")]),
                 lane("original", &[]),
                 lane("friction 1.3", &[("surface.friction", "1.3")]),
@@ -51,42 +52,43 @@ pub(super) const FRICTION: Lesson = Lesson {
 pub(super) const FRAME_RATE: Lesson = Lesson {
     title: "Frame rate and physics steps",
     question: "Why did the best snake climb on one computer and fall on another?",
-    story: "In the original experiment, forces were applied once per drawn frame. Moving the window slowed the \
-            drawing, and therefore the snake. The stage shows the same genome with its own number of physics \
-            steps per second, 60, and with two and four times as many.",
+    story: "In the report's experiment, forces were applied once per drawn frame. Moving the window slowed the \
+            drawing and the snake. The stage shows the same genome with its own 60 physics steps per second, with \
+            120 and 240.",
     to_try: "Watch the race. Then show one snake alone and play it to its end at two or more speeds, for \
              example × 1 and × 4 (the field with × below the stage). You can also turn on everything in Show to \
              slow the drawing.",
     look_for: "In the race, where each snake ends. At each playback speed, all digits of the end position, and \
                the hash of the motion: sixteen characters (0 to 9 and a to f) that summarise every bit of each \
                block's position after every physics step.",
-    conclusion: "Here every physics step has the same length, and drawing does not affect the simulation. A slow \
-                 computer shows fewer frames of the same climb. Some snakes climb with any number of steps.",
+    conclusion: "Here every physics step has the same length, whatever is drawn. A slow computer shows fewer frames of the same climb. Some snakes climb at any step rate.",
     scenes: &[
-        LessonScene::Lanes {
+        LessonScene {
             label: "More physics steps per second",
-            champion: "by-heart",
-            question: Some(furthest(
-                "With 120 steps it falls off the stairs, and goes further on the ground.",
-            )),
-            lanes: &[
+            shows: Shows::Champion("by-heart"),
+            question: Some(Question {
+                text: "Which snake ends furthest, on the stairs or beside them?",
+                asks: Asks::Furthest,
+                finding: "At 120 it falls off and ends further, but on the ground.",
+            }),
+            sides: &[
                 lane("original", &[]),
-                lane("120 steps per second", &[("physics.steps_per_s", "120")]),
-                lane("240 steps per second", &[("physics.steps_per_s", "240")]),
+                lane("120 physics steps/s", &[("physics.steps_per_s", "120")]),
+                lane("240 physics steps/s", &[("physics.steps_per_s", "240")]),
             ],
         },
-        LessonScene::Lanes {
+        LessonScene {
             label: "The original at two playback speeds",
-            champion: "climber",
+            shows: Shows::Champion("climber"),
             question: Some(Question {
                 text: "Play it to its end at two speeds. Will it end exactly the same?",
                 asks: Asks::PlaybackSpeed,
-                finding: "The playback speed changes when a physics step is drawn, not what happens in it.",
+                finding: "Playback speed changes when a step is drawn, not what happens in it.",
             }),
-            lanes: &[lane("original", &[])],
+            sides: &[lane("original", &[])],
         },
     ],
-    worksheet: include_str!("../../../../../docs/worksheets/2.md"),
+    worksheet: include_str!("../../../../../docs/worksheets/8.md"),
 };
 
 /// Lesson on the limits of the joints.
@@ -94,24 +96,24 @@ pub(super) const JOINT_LIMITS: Lesson = Lesson {
     title: "Limits on the joints",
     question: "Does it help evolution to restrict the joints, or does it hinder?",
     story: "A joint that can turn all the way round allows more movements, and it can fold the snake into itself. \
-            In the original experiment, each joint had a maximum angle, chosen at random for each genome.",
-    to_try: "Run evolution twice for six generations of 120 snakes: with the original limits, and with limits of \
+            In the report's experiment, each joint had a maximum angle, chosen at random for each genome.",
+    to_try: "Run evolution twice for six generations of 120 snakes: with the limits of the report, and with limits of \
              172°, which hardly restrict a joint.",
     look_for: "The number of disqualified snakes, the distance of the best one, and where that lies in the race \
                afterwards.",
     conclusion: "Limits remove more useless movements than useful ones, so that evolution has more snakes to \
                  choose from. What it then finds depends on the fitness: here only the distance counts, and six \
-                 generations go for a way beside the stairs.",
+                 generations find a way past the stairs.",
     scenes: &[
         AS_FOUND,
-        LessonScene::Runs {
+        LessonScene {
             label: "Evolve with and almost without limits",
-            preset: "quick",
+            shows: Shows::RunsOf("quick"),
             question: best_run(
                 "Almost without limits, more snakes are disqualified, and fewer are left to breed from. The \
-                 best snake with limits gets further, but it passes the stairs at their side.",
+                 best snake with limits gets further, but it goes past the stairs.",
             ),
-            runs: &[
+            sides: &[
                 run("with limits", 3, &[("population", "120"), ("generations", "6")]),
                 run(
                     "almost no limits",
@@ -126,31 +128,31 @@ pub(super) const JOINT_LIMITS: Lesson = Lesson {
             ],
         },
     ],
-    worksheet: include_str!("../../../../../docs/worksheets/3.md"),
+    worksheet: include_str!("../../../../../docs/worksheets/6.md"),
 };
 
 /// Lesson on the decrease of the mutation range.
 pub(super) const MUTATIONS: Lesson = Lesson {
     title: "Mutations: how fast should they shrink?",
     question: "What happens to the progress of a run when its mutations become smaller?",
-    story: "Children differ from their parent by random changes within a mutation range. In the original \
-            experiment this range halved with each generation: 100, 50, 25 and so on.",
+    story: "Children differ from their parent by random changes within a mutation range. In the report's \
+            experiment this range halved with each generation: 100, 50, 25 N·m and so on.",
     to_try: "Run evolution twice for fourteen generations: with a range that halves, and with one that shrinks \
              by only 5 % per generation.",
     look_for: "The two lines, early and late: which is ahead, and which still rises?",
     conclusion: "Small changes refine a solution; large changes find new ones. A range that vanishes after six \
-                 generations can only refine. You can set the range and its decay in the Watch panel; some other \
-                 strategies, such as CMA-ES, adapt the size of their changes themselves.",
+                 generations can only refine. With the strategy Halving, you set the range and its decay in the Watch \
+                 panel; some others, such as CMA-ES, adapt the size of their changes themselves.",
     scenes: &[
         AS_FOUND,
-        LessonScene::Runs {
+        LessonScene {
             label: "Evolve with both ranges",
-            preset: "quick",
+            shows: Shows::RunsOf("quick"),
             question: best_run(
-                "With the range that stays large, the best snake gets further. Not every seed shows this, \
-                 because some runs are lucky early.",
+                "With the range that stays large, the best snake gets further. Not every run shows this, \
+                 because some are lucky early.",
             ),
-            runs: &[
+            sides: &[
                 run("range halves", 4, &[("population", "120"), ("generations", "14")]),
                 run(
                     "range stays large",
@@ -160,44 +162,44 @@ pub(super) const MUTATIONS: Lesson = Lesson {
             ],
         },
     ],
-    worksheet: include_str!("../../../../../docs/worksheets/4.md"),
+    worksheet: include_str!("../../../../../docs/worksheets/2.md"),
 };
 
 /// Lesson on the repetition of a run.
 pub(super) const REPETITION: Lesson = Lesson {
     title: "Repeating a run",
     question: "Does a run give the same result when you repeat it?",
-    story: "In the original experiment, the same forces gave different results from run to run and from computer \
+    story: "In the report's experiment, the same forces gave different results from run to run and from computer \
             to computer. Results could not be checked, work could not be shared between computers, and runs \
             were repeated only to discard outliers.",
-    to_try: "Repeat the same run on one thread and on two threads. Then repeat it with the friction changed by \
-             a millionth.",
+    to_try: "Repeat the same run with one and with two snakes computed at a time. Then repeat it with the friction \
+             changed by a millionth.",
     look_for: "The hash of each run: sixteen characters (0 to 9 and a to f) that summarise every bit of \
                every evaluation.",
     conclusion: "A hash tells at once whether two runs are the same in every bit. Only a result that can be \
                  repeated exactly can be checked, and work on it can be shared between computers.",
     scenes: &[
         AS_FOUND,
-        LessonScene::Runs {
+        LessonScene {
             label: "The same run twice",
-            preset: "quick",
+            shows: Shows::RunsOf("quick"),
             question: same_hash(
-                "The same seed and settings give the same hash, with any number of threads and on every \
-                 computer with an x86-64 processor.",
+                "The same settings and the same random numbers (seed) give the same hash, however many snakes are \
+                 computed at a time, and on every computer with an x86-64 processor.",
             ),
-            runs: &[
-                run("on one thread", 1, &[("population", "60"), ("generations", "6")]),
+            sides: &[
+                run("one at a time", 1, &[("population", "60"), ("generations", "6")]),
                 Side {
                     threads: 2,
-                    ..run("on two threads", 1, &[("population", "60"), ("generations", "6")])
+                    ..run("two at a time", 1, &[("population", "60"), ("generations", "6")])
                 },
             ],
         },
-        LessonScene::Runs {
+        LessonScene {
             label: "Friction changed by a millionth",
-            preset: "quick",
+            shows: Shows::RunsOf("quick"),
             question: same_hash("Even a change of a millionth gives another result."),
-            runs: &[
+            sides: &[
                 run("friction 1", 1, &[("population", "60"), ("generations", "6")]),
                 run(
                     "friction 1.000001",
@@ -207,5 +209,5 @@ pub(super) const REPETITION: Lesson = Lesson {
             ],
         },
     ],
-    worksheet: include_str!("../../../../../docs/worksheets/5.md"),
+    worksheet: include_str!("../../../../../docs/worksheets/9.md"),
 };

@@ -14,7 +14,7 @@ fn of_many(count: usize) -> (Tried, Vec<SavePlace>) {
         std::fs::copy(folder.join("a.ron"), copy).expect("copied");
     }
     assert_eq!(tried.own().len(), count);
-    let places = tried.library.items().iter().map(|item| item.place().clone());
+    let places = tried.library.items.iter().map(|item| item.place().clone());
     let places = places.filter(|place| place.path().is_some()).collect();
     (tried, places)
 }
