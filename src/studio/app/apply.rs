@@ -29,6 +29,7 @@ use crate::studio::state::machines::MachinesLink;
 use crate::studio::state::shares::{Shares, refuse_number};
 use crate::studio::state::stairs_exams::StairsExams;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
+use crate::studio::state::unfinished::unfinished;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 
@@ -191,7 +192,14 @@ impl StudioParams<'_, '_> {
                 }
             }
             Command::Notify(text) => notices.info(text.clone()),
-            Command::Quit => self.quit.0 = true,
+            Command::Quit => {
+                let work = unfinished(&self.shares, &self.exams, &self.bodies, library);
+                if work.is_empty() || workspace.modal() == Some(Modal::Quit) {
+                    self.quit.0 = true;
+                } else {
+                    workspace.toggle_modal(Modal::Quit);
+                }
+            }
         }
         Ok(())
     }

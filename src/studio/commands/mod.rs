@@ -73,7 +73,7 @@ pub(super) enum Command {
     Redo,
     /// Show a message.
     Notify(String),
-    /// Close the window.
+    /// Close the window. If work would be lost, the first request asks, and the second one closes.
     Quit,
 }
 

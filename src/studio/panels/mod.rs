@@ -15,6 +15,7 @@ mod on_stage;
 mod own_files;
 mod own_stairs_button;
 mod player;
+mod quit_question;
 mod run;
 mod senses;
 mod settings;
@@ -49,6 +50,7 @@ use super::state::machines::MachinesLink;
 use super::state::options::OpenedComparison;
 use super::state::shares::Shares;
 use super::state::stairs_exams::StairsExams;
+use super::state::unfinished::unfinished;
 use super::ui::accessible::named;
 use super::ui::theme;
 use super::ui::viewport::StageArea;
@@ -73,6 +75,7 @@ use player::cards::{CardSituation, around_stage};
 use player::presented_caption::{PresentedCaption, caption_band};
 use player::stage_card::CardStates;
 use player::timeline::{TimelinePanel, TimelineSpan};
+use quit_question::quit_question;
 use run::EvolutionPanel;
 use senses::{SensesPanel, SensesView};
 use shown::ShownLane;
@@ -264,6 +267,10 @@ fn draw(
                 .map(|(_, place)| *place);
             let player_commands = on_stage.playback.commands;
             panels.tour.ui(&context, step, target, player_commands, &mut commands);
+        }
+        Some(Modal::Quit) => {
+            let work = unfinished(&data.shares, &data.exams, &data.bodies, &data.saves);
+            quit_question(&context, &work, &mut commands);
         }
         None => {}
     }

@@ -22,6 +22,7 @@ pub mod stairs_race;
 pub mod sweep;
 pub mod turns;
 pub mod undo;
+pub mod unfinished;
 pub mod what_if;
 
 use bevy::prelude::*;
