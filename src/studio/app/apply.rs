@@ -170,6 +170,10 @@ impl StudioParams<'_, '_> {
                 }
                 let show = self.bodies.apply(command, stage.selected().as_ref(), run)?;
                 stage.present_others(show, notices);
+                if *command == BodyCommand::Evolve {
+                    workspace.open(PanelKind::Run);
+                    notices.info("A run started from the edited body.".to_owned());
+                }
             }
             Command::Machines(command) => self.machines.apply(command, run)?,
             // A running batch operation is not in the history yet, so undo would revert an earlier step.

@@ -1,8 +1,8 @@
 //! Tests of the editor of bodies.
 
 use super::*;
-use crate::studio::state::current_run::{climber, prepared_run};
-use snakes_core::save::shipped_champion;
+use crate::studio::state::current_run::{RunStatus, climber, prepared_run, run_in, small_run};
+use snakes_core::save::{SavesFolder, shipped_champion};
 use snakes_core::world::PhysicsEngine;
 
 fn editing() -> (BodyEditor, CurrentRun) {
@@ -102,11 +102,15 @@ fn a_change_just_before_a_tuning_is_shown_and_the_next_tuning_tries_other_gaits(
 }
 
 #[test]
-fn the_next_run_can_begin_with_the_edited_body() {
-    let (mut editor, mut run) = editing();
+fn a_run_starts_from_the_edited_body_and_closes_the_editor() {
+    let (mut editor, _) = editing();
+    let folder = tempfile::tempdir().expect("a folder");
+    let saves = SavesFolder::find(Some(folder.path()));
+    let mut run = run_in(&saves, small_run(&saves, 1, 3));
     let change = BodyCommand::Change { block: 3, change: BodyChange::Duplicate };
     editor.apply(&change, None, &mut run).expect("allowed");
     editor.apply(&BodyCommand::Evolve, None, &mut run).expect("a founder");
+    assert_eq!((editor.edited().is_none(), run.status()), (true, RunStatus::Running));
     assert_eq!(run.next_founder(), Some("climber, edited"));
     assert!(run.next_settings().genome.bodies.vary);
 }
