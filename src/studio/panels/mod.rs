@@ -80,7 +80,7 @@ use run::EvolutionPanel;
 use senses::{SensesPanel, SensesView};
 use shown::ShownLane;
 use stairs::StairsPanel;
-use tab_names::small_tabs;
+use tab_names::{fit_tabs, small_tabs};
 use world::WorldPanel;
 use world::surface_readout::ReadLanes;
 
@@ -193,6 +193,9 @@ fn draw(
         &FOLLOW_COMMAND => on_stage.following.offered(&data.run),
         _ => on_stage.is_on(command, *data.theme),
     };
+    if is_settled {
+        fit_tabs(&context, &mut workspace.layout);
+    }
     let mut viewer = Viewer {
         small_tabs: small_tabs(&context, &workspace.layout),
         panels: &mut *panels,

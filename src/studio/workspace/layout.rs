@@ -148,6 +148,25 @@ impl Layout {
         leaves.map(|(_, leaf)| (leaf.rect().width(), leaf.tabs.clone())).collect()
     }
 
+    /// Closes panels that open on demand, the one chosen longest ago first, while the tabs of a bar do not fit. `least_width`
+    /// returns the least width of a bar with these panels, in points. The panels in front stay.
+    pub fn fit_tabs(&mut self, least_width: impl Fn(&[PanelKind]) -> f32) {
+        let front = self.front_panels();
+        for (width, mut kinds) in self.tab_bars() {
+            // A bar has no width until it is drawn.
+            while width > 0.0 && least_width(&kinds) > width {
+                let is_spare =
+                    |kind: &&PanelKind| !PanelKind::INITIAL.contains(kind) && !front.contains(kind);
+                let chosen = |kind: &&PanelKind| self.chosen.iter().position(|of| of == *kind);
+                let Some(spare) = kinds.iter().filter(is_spare).min_by_key(chosen).copied() else {
+                    break;
+                };
+                self.close(spare);
+                kinds.retain(|kind| *kind != spare);
+            }
+        }
+    }
+
     /// Focuses a panel, and restores it if it was closed.
     pub fn open(&mut self, kind: PanelKind) {
         if self.is_to_be_laid_out {
