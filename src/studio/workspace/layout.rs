@@ -31,8 +31,6 @@ pub(crate) struct Layout {
 const HIGH: f32 = 800.0;
 /// Width of the left panels, in points. All tab names fit.
 const LEFT: f32 = 384.0;
-/// Distance by which a tab bar scrolls to show its last tabs, in points. The dock area limits it to what is hidden.
-const TO_LAST_TABS: f32 = -1000.0;
 
 /// Returns whether a window of this size, in points, has room for panels below other panels.
 fn is_high(size: egui::Vec2) -> bool {
@@ -179,9 +177,6 @@ impl Layout {
             self.state.set_focused_node_and_surface(path.node_path());
             if let Ok(leaf) = self.state.leaf_mut(path.node_path()) {
                 leaf.collapsed = false;
-                // A narrow bar has room for the names of the usual panels only.
-                leaf.scroll =
-                    if path.tab.0 < PanelKind::INITIAL.len() { 0.0 } else { TO_LAST_TABS };
             }
         }
     }

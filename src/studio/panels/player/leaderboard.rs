@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use super::presented_caption::PresentedCaption;
 use super::strip_marks::landing_flag;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
@@ -155,20 +156,9 @@ fn latest_seen(ui: &mut egui::Ui, ranking: &[RankedLane], time_s: f64) {
     if let Some((at_s, places)) = latest.filter(|(at_s, _)| *at_s > time_s) {
         return explain(ui, &format!("At {at_s:.1} s: {places}"));
     }
-    let places = ranking.iter().take(NAMED).enumerate().map(|(place, ranked)| {
-        let result = match ranked.landed_s {
-            _ if !ranked.counts() => "out".to_owned(),
-            Some(landed_s) => format!("top {landed_s:.2} s"),
-            None => format!("{} m", decimals(ranked.y_m, 1)),
-        };
-        format!("{}. {} {result}", place + 1, ranked.name)
-    });
-    let places = places.collect::<Vec<_>>().join(", ");
+    let places = PresentedCaption::of_race(ranking).in_words();
     ui.data_mut(|data| data.insert_temp(id, (time_s, places)));
 }
-
-/// Number of places that remain readable after playback has gone back.
-const NAMED: usize = 3;
 
 /// Describes the time from which all copies differ from the original, if it is the same for all.
 fn common_beginning(lanes: &[&Lane]) -> Option<String> {

@@ -92,7 +92,8 @@ impl PresentedCaption {
         Self { title: CaptionPart::plain(title), details: Vec::new() }
     }
 
-    fn of_race(ranking: &[RankedLane]) -> Self {
+    /// Creates the caption of a race: its leader, and those behind.
+    pub fn of_race(ranking: &[RankedLane]) -> Self {
         let result = |ranked: &RankedLane| match ranked.landed_s {
             _ if !ranked.counts() => "out".to_owned(),
             Some(landed_s) => format!("reached the top after {landed_s:.1} s"),
@@ -111,6 +112,12 @@ impl PresentedCaption {
             title: CaptionPart { lane: Some(leader.lane), text: title },
             details: behind.collect(),
         }
+    }
+
+    /// Returns all parts of the caption in one line.
+    pub fn in_words(self) -> String {
+        let parts = std::iter::once(self.title).chain(self.details).map(|part| part.text);
+        parts.collect::<Vec<_>>().join(", ")
     }
 
     /// Creates the caption of a what-if: compares the latest copy, which is the last lane, with the original, which is the first.

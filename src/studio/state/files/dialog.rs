@@ -42,7 +42,7 @@ pub fn ask(question: &FileQuestion) -> io::Result<BackgroundTask<DialogAnswer>> 
         FileQuestion::Share(format, name) => {
             let info = format.info();
             let named = dialog
-                .set_title(title_of_share(info.title, name))
+                .set_title(format!("{} of {name}", info.title))
                 .set_file_name(format!("{name}.{}", info.ending));
             let file = named.add_filter(info.title, &[info.ending]).save_file();
             Box::pin(async { file.await.into_iter().collect() })
@@ -59,11 +59,6 @@ pub fn ask(question: &FileQuestion) -> io::Result<BackgroundTask<DialogAnswer>> 
     })
 }
 
-/// Returns the title of the dialog for a file with the snake of this name: "Film as GIF of Generation 56".
-fn title_of_share(format: &str, name: &str) -> String {
-    format!("{format} of {name}")
-}
-
 /// Opens a folder in the operating system's file manager, or a page in its browser.
 ///
 /// # Errors
@@ -74,12 +69,4 @@ pub fn open(path: &Path) -> Result<(), String> {
         return Err(why(io::ErrorKind::NotFound.into()));
     }
     open::that_detached_with_timeout(path, OPENED_AFTER).map_err(why)
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_dialog_names_the_snake_that_it_writes() {
-        assert_eq!(super::title_of_share("Film", "Generation 56"), "Film of Generation 56");
-    }
 }

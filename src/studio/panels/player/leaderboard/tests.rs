@@ -72,7 +72,7 @@ fn the_latest_result_of_a_race_stays_after_playback_went_back() {
         let lanes: Vec<&Lane> = lanes.iter().collect();
         leaderboard(ui, &lanes, &StageMode::Race, 1, time_s.get(), (false, true), commands);
     });
-    let result = format!("At {end_s:.1} s: 1. first top ");
+    let result = format!("At {end_s:.1} s: first wins: reached the top after ");
     assert!(board.query_by_label_contains(&result).is_none(), "the ranking shows it");
     time_s.set(0.5);
     board.run();
