@@ -17,6 +17,7 @@ use crate::studio::commands::{
     StageCommand, WindowCommand,
 };
 use crate::studio::panels::help::tour::highlighted_panel;
+use crate::studio::panels::quit_question::unfinished;
 use crate::studio::scene::view_commands::ViewParams;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::opening::OpeningChampions;
@@ -29,7 +30,6 @@ use crate::studio::state::machines::MachinesLink;
 use crate::studio::state::shares::{Shares, refuse_number};
 use crate::studio::state::stairs_exams::StairsExams;
 use crate::studio::state::undo::{UNDO_SUBJECT, UndoDirection, UndoHistory, UndoStep};
-use crate::studio::state::unfinished::unfinished;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::workspace::Workspace;
 

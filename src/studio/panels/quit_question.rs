@@ -1,11 +1,32 @@
-//! The question whether to quit although unfinished work would be lost.
+//! The question whether to quit although unfinished work would be lost. The run is not lost: every finished generation is saved.
 
 use bevy_egui::egui;
 
 use crate::studio::commands::{Command, WindowCommand};
+use crate::studio::state::body_editor::BodyEditor;
+use crate::studio::state::library::Library;
+use crate::studio::state::shares::Shares;
+use crate::studio::state::stairs_exams::StairsExams;
 use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::text_rows::{explain, title_text};
 use crate::studio::ui::theme;
+
+/// Returns a sentence for each piece of work that is lost if the program ends now.
+pub(crate) fn unfinished(
+    shares: &Shares,
+    exams: &StairsExams,
+    bodies: &BodyEditor,
+    library: &Library,
+) -> Vec<String> {
+    let share = shares.progress().map(|of| format!("A file is being written: {}.", of.in_words()));
+    let exam = exams.progress().map(|(name, [done, all])| {
+        format!("{name} is being examined on other stairs: {done} of {all} trials are done.")
+    });
+    let body = bodies.edited().filter(|of| of.steps != [false; 2] || of.tuning.is_some());
+    let body = body.map(|of| format!("The changed body of {} is not saved.", of.original.name()));
+    let batches = library.under_way().map(|(words, _)| format!("{words} saves is in progress."));
+    share.into_iter().chain(exam).chain(body).chain(batches).collect()
+}
 
 /// Draws the question over the window, with a sentence for each piece of work in `unfinished`, and collects the answer.
 /// Closes the question when the last piece is finished.

@@ -22,7 +22,6 @@ pub mod stairs_race;
 pub mod sweep;
 pub mod turns;
 pub mod undo;
-pub mod unfinished;
 pub mod what_if;
 
 use bevy::prelude::*;

@@ -1,8 +1,8 @@
 //! Tests of the editor of bodies.
 
 use super::*;
-use crate::studio::state::current_run::{RunStatus, climber, prepared_run, run_in, small_run};
-use snakes_core::save::{SavesFolder, shipped_champion};
+use crate::studio::state::current_run::{RunStatus, climber, prepared_run};
+use snakes_core::save::shipped_champion;
 use snakes_core::world::PhysicsEngine;
 
 fn editing() -> (BodyEditor, CurrentRun) {
@@ -103,10 +103,7 @@ fn a_change_just_before_a_tuning_is_shown_and_the_next_tuning_tries_other_gaits(
 
 #[test]
 fn a_run_starts_from_the_edited_body_and_closes_the_editor() {
-    let (mut editor, _) = editing();
-    let folder = tempfile::tempdir().expect("a folder");
-    let saves = SavesFolder::find(Some(folder.path()));
-    let mut run = run_in(&saves, small_run(&saves, 1, 3));
+    let (mut editor, mut run) = editing();
     let change = BodyCommand::Change { block: 3, change: BodyChange::Duplicate };
     editor.apply(&change, None, &mut run).expect("allowed");
     editor.apply(&BodyCommand::Evolve, None, &mut run).expect("a founder");
