@@ -81,7 +81,12 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         let mut app = App::new();
         app.add_plugins(
             DefaultPlugins
-                .set(WindowPlugin { primary_window: Some(window(size)), ..default() })
+                .set(WindowPlugin {
+                    primary_window: Some(window(size)),
+                    // The command to quit closes the window.
+                    close_when_requested: false,
+                    ..default()
+                })
                 .set(LogPlugin { level: Level::WARN, ..default() }),
         )
         // Keep drawing while another window has the focus.

@@ -75,7 +75,7 @@ fn keys_start_pause_and_single_step_evolution() {
 fn buttons_and_champion_list_control_run_and_stage() {
     let Some(studio) = Studio::open("buttons", "--preset quick --generations 1000") else { return };
     studio.wait_for_title("running");
-    studio.click_label("Pause");
+    studio.click_label("Pause evolution");
     studio.wait_for_title("paused");
     let before = studio.generations();
     studio.click_label("One generation");
@@ -215,7 +215,7 @@ fn a_second_start_opens_the_stopped_run_with_continue_and_new_run() {
     let studio = Studio::open_following("second-start", &arguments).expect("it opened before");
     studio.wait_for_title("seed 1 - ");
     studio.wait_for_title("paused");
-    studio.place("Continue");
+    studio.place("Continue evolution");
     studio.click_label("New run");
     studio.wait_for_title("seed 2 - ");
     studio.wait_for_title("running");
@@ -302,7 +302,7 @@ fn studio_and_headless_run_refuse_each_others_folder_and_name_the_owner() {
     studio.wait_for_title("generations, ready");
     headless.kill().expect("killed");
     headless.wait().expect("ended");
-    studio.click_label("Start");
+    studio.click_label("Start evolution");
     studio.wait_for_title("running");
 }
 

@@ -17,6 +17,7 @@ use crate::studio::commands::{
     StageCommand, WindowCommand,
 };
 use crate::studio::panels::help::tour::highlighted_panel;
+use crate::studio::panels::quit_question::unfinished;
 use crate::studio::scene::view_commands::ViewParams;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::opening::OpeningChampions;
@@ -169,6 +170,10 @@ impl StudioParams<'_, '_> {
                 }
                 let show = self.bodies.apply(command, stage.selected().as_ref(), run)?;
                 stage.present_others(show, notices);
+                if *command == BodyCommand::Evolve {
+                    workspace.open(PanelKind::Run);
+                    notices.info("A run started from the edited body.".to_owned());
+                }
             }
             Command::Machines(command) => self.machines.apply(command, run)?,
             // A running batch operation is not in the history yet, so undo would revert an earlier step.
@@ -191,7 +196,14 @@ impl StudioParams<'_, '_> {
                 }
             }
             Command::Notify(text) => notices.info(text.clone()),
-            Command::Quit => self.quit.0 = true,
+            Command::Quit => {
+                let work = unfinished(&self.shares, &self.exams, &self.bodies, library);
+                if work.is_empty() || workspace.modal() == Some(Modal::Quit) {
+                    self.quit.0 = true;
+                } else {
+                    workspace.toggle_modal(Modal::Quit);
+                }
+            }
         }
         Ok(())
     }

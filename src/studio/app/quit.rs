@@ -1,10 +1,13 @@
-//! Ends the program when the pictures that the user requested are saved.
+//! Ends the program when the pictures that the user requested are saved. The window's own close button sends the command to quit.
 
 use std::time::Duration;
 
 use bevy::prelude::*;
+use bevy::window::WindowCloseRequested;
 
+use crate::studio::commands::Command;
 use crate::studio::pictures::screenshot::AwaitedPictures;
+use crate::studio::schedule::FrameSet;
 
 /// Whether the user has requested the end of the program.
 #[derive(Resource, Debug, Default)]
@@ -20,7 +23,14 @@ const LAST_PATIENCE: Duration = Duration::from_secs(30);
 
 pub(crate) fn plugin(app: &mut App) {
     // The program ends before the preferences are stored for the last time.
-    app.init_resource::<QuitRequest>().add_systems(PostUpdate, end);
+    app.init_resource::<QuitRequest>()
+        .add_systems(Update, close.in_set(FrameSet::TakeIn))
+        .add_systems(PostUpdate, end);
+}
+
+/// Sends the command to quit for the window's close button, because quitting may ask first.
+fn close(mut closing: MessageReader<WindowCloseRequested>, mut send: MessageWriter<Command>) {
+    send.write_batch(closing.read().map(|_| Command::Quit));
 }
 
 fn end(
@@ -49,7 +59,10 @@ mod tests {
     /// Creates a program with a picture that is not saved yet.
     fn app() -> (App, Entity) {
         let mut app = App::new();
-        app.init_resource::<Time<Real>>().add_plugins(plugin);
+        app.init_resource::<Time<Real>>()
+            .add_message::<Command>()
+            .add_message::<WindowCloseRequested>()
+            .add_plugins(plugin);
         let picture = app.world_mut().spawn(Screenshot::primary_window()).id();
         (app, picture)
     }
@@ -64,6 +77,16 @@ mod tests {
         app.world_mut().despawn(picture);
         app.update();
         assert_eq!(app.should_exit(), Some(AppExit::Success));
+    }
+
+    #[test]
+    fn the_close_button_of_the_window_sends_the_command_to_quit() {
+        let (mut app, window) = app();
+        app.world_mut().write_message(WindowCloseRequested { window });
+        app.update();
+        let sent: Vec<Command> =
+            app.world_mut().resource_mut::<Messages<Command>>().drain().collect();
+        assert_eq!(sent, [Command::Quit]);
     }
 
     /// Counts the frames of this length until a program that waits for a picture ends.

@@ -73,7 +73,7 @@ pub(super) enum Command {
     Redo,
     /// Show a message.
     Notify(String),
-    /// Close the window.
+    /// Close the window. If work would be lost, the first request asks, and the second one closes.
     Quit,
 }
 
@@ -355,7 +355,7 @@ pub(super) enum BodyCommand {
     Tune,
     /// Stop adapting the gait, and keep the best one found.
     CancelTuning,
-    /// Start the next run from the edited body.
+    /// Start a run from the edited body at once, and close the editor.
     Evolve,
     /// Close the editor, and show the original body alone.
     Close,

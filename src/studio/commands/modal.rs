@@ -9,4 +9,6 @@ pub(crate) enum Modal {
     CommandPalette,
     /// A step of the tour; the first is 0.
     Tour(usize),
+    /// The question whether to quit although unfinished work would be lost.
+    Quit,
 }

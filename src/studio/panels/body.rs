@@ -199,7 +199,7 @@ fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment, commands: &mut V
     ui.end_row();
 }
 
-/// Draws the buttons that adapt the gait to the edited body, and that start the next run from it.
+/// Draws the buttons that adapt the gait to the edited body, and that start a run from it.
 fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
     ui.add_space(theme::GAP / 2.0);
     if let Some([done, all]) = edited.tuning {
@@ -219,8 +219,8 @@ fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) 
                 BodyCommand::Tune,
             ),
             (
-                "Start next run from this body",
-                "The next run evolves it further, block by block",
+                "Start a run from this body",
+                "Evolve it further, block by block. The current run stays saved",
                 BodyCommand::Evolve,
             ),
         ] {

@@ -15,6 +15,7 @@ mod on_stage;
 mod own_files;
 mod own_stairs_button;
 mod player;
+pub mod quit_question;
 mod run;
 mod senses;
 mod settings;
@@ -73,11 +74,12 @@ use player::cards::{CardSituation, around_stage};
 use player::presented_caption::{PresentedCaption, caption_band};
 use player::stage_card::CardStates;
 use player::timeline::{TimelinePanel, TimelineSpan};
+use quit_question::{quit_question, unfinished};
 use run::EvolutionPanel;
 use senses::{SensesPanel, SensesView};
 use shown::ShownLane;
 use stairs::StairsPanel;
-use tab_names::small_tabs;
+use tab_names::{fit_tabs, small_tabs};
 use world::WorldPanel;
 use world::surface_readout::ReadLanes;
 
@@ -190,6 +192,9 @@ fn draw(
         &FOLLOW_COMMAND => on_stage.following.offered(&data.run),
         _ => on_stage.is_on(command, *data.theme),
     };
+    if is_settled {
+        fit_tabs(&context, &mut workspace.layout);
+    }
     let mut viewer = Viewer {
         small_tabs: small_tabs(&context, &workspace.layout),
         panels: &mut *panels,
@@ -264,6 +269,10 @@ fn draw(
                 .map(|(_, place)| *place);
             let player_commands = on_stage.playback.commands;
             panels.tour.ui(&context, step, target, player_commands, &mut commands);
+        }
+        Some(Modal::Quit) => {
+            let work = unfinished(&data.shares, &data.exams, &data.bodies, &data.saves);
+            quit_question(&context, &work, &mut commands);
         }
         None => {}
     }

@@ -1,5 +1,5 @@
-//! Font sizes of the names on tabs. In a narrow panel the names are smaller, so that all tabs are visible. Tabs beyond
-//! the end of their bar can only be reached by scrolling.
+//! Font sizes of the names on tabs. In a narrow panel the names are smaller, so that all tabs are visible. Further
+//! panels replace those that were chosen longest ago.
 
 use bevy_egui::egui;
 
@@ -15,6 +15,12 @@ const FOLD_BUTTON: f32 = 24.0;
 
 /// Font sizes of small names, in points. The largest that fits into the bar is used, or else the last.
 const SMALL_SIZES: [f32; 2] = [theme::SMALL_SIZE, 10.0];
+
+/// Closes panels for whose tabs a bar has no room even with the smallest names: see [`Layout::fit_tabs`].
+pub(super) fn fit_tabs(context: &egui::Context, layout: &mut Layout) {
+    let smallest = egui::FontId::proportional(SMALL_SIZES[1]);
+    layout.fit_tabs(|kinds| bar_width(context, kinds, &smallest));
+}
 
 /// Returns the panels whose tabs have small names because their bar is too narrow for the usual size, and the font
 /// sizes of the names, in points.

@@ -80,7 +80,7 @@ pub(super) fn lanes_of(champions: &[(String, LoadedChampion)]) -> Result<Vec<Lan
 pub(super) fn over_heads(lanes: &[&Lane]) -> Vec<(Vec3, String)> {
     let text = |lane: &&Lane| {
         let head = lane.drawn_poses().next()?.translation + lane.offset();
-        let text = format!("{}  {:.1} m", lane.staged.label(), lane.drawn_middle().y);
+        let text = format!("{}  {}", lane.staged.label(), lane.place_in_words());
         Some((head + Vec3::Z * OVER_HEAD_M, text))
     };
     if lanes.len() > 1 { lanes.iter().filter_map(text).collect() } else { Vec::new() }

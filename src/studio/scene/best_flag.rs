@@ -6,10 +6,12 @@ use bevy::prelude::*;
 use super::meshes::{BALL_SIDES, to_mesh};
 use super::props::{Props, piece};
 use super::text::{TextMeshes, TextPlacement};
-use crate::studio::stage::lane::Lane;
+use crate::studio::stage::lane::{AT_THE_TOP, Lane};
 use crate::studio::stage::staged_champion::ChampionSource;
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::decimals::decimals;
+use snakes_core::evolve::Champion;
+use snakes_core::score::arrived_y_m;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
 
@@ -41,19 +43,20 @@ pub(super) fn plant(
 ) {
     let Some(run) = run else { return };
     let champions = run.reports().iter().filter_map(|report| report.champion.as_ref());
-    let reached_m = champions.map(|champion| champion.evaluation.centre_y_m);
-    let best = reached_m.reduce(f32::max).map(|y_m| (y_m, run.number()));
-    let is_new = *planted != best;
+    let reached_m = |champion: &&Champion| champion.evaluation.centre_y_m;
+    let best = champions.max_by(|a, b| reached_m(a).total_cmp(&reached_m(b)));
+    let place = best.as_ref().map(|champion| (reached_m(champion), run.number()));
+    let is_new = *planted != place;
     if is_new {
-        *planted = best;
+        *planted = place;
         flags.iter().for_each(|flag| commands.entity(flag).despawn());
     }
-    let Some((y_m, run)) = best else { return };
+    let Some((best, (y_m, run))) = best.zip(place) else { return };
     for (entity, lane) in lanes.iter().filter(|(_, lane)| is_marked(lane, run)) {
         if !is_new && !lane.is_added() {
             continue;
         }
-        let text = format!("furthest {} m", decimals(y_m, 1));
+        let text = sign(best);
         let width_m = lettering.width_m(&text, DIGIT_M) + CLOTH_M - DIGIT_M;
         let middle = Vec3::new(0.0, width_m / 2.0, POST_M - CLOTH_M / 2.0);
         let mut writing = lettering.begin();
@@ -74,6 +77,17 @@ pub(super) fn plant(
         let post = (Flag, place, piece(&post, &props.post), ChildOf(entity));
         let mut post = commands.spawn(post);
         post.with_child(piece(&cloth, &props.cloth)).with_child((text, NotShadowCaster));
+    }
+}
+
+/// Returns the text of the flag for the champion that got furthest: its distance, unless the whole snake is on the landing,
+/// where its fitness no longer grows.
+fn sign(best: &Champion) -> String {
+    let Champion { evaluation, trial, genome, .. } = best;
+    let arrived_y_m = || arrived_y_m(&trial.stairs, &trial.agent.body_plan(genome));
+    match evaluation.is_on_landing(&trial.stairs) && evaluation.centre_y_m >= arrived_y_m() {
+        true => AT_THE_TOP.to_owned(),
+        false => format!("furthest {} m", decimals(evaluation.centre_y_m, 1)),
     }
 }
 
@@ -102,6 +116,19 @@ mod tests {
         for (y_m, z_m) in [(-7.0, 0.0), (3.5, 0.5), (21.3, 5.0), (30.0, 5.0), (60.0, 0.0)] {
             assert_eq!(foot(&stairs, y_m).z, z_m, "at {y_m}");
         }
+    }
+
+    #[test]
+    fn the_flag_tells_a_distance_until_the_whole_snake_is_on_the_landing() {
+        let mut champion = climber(0).champion().clone();
+        for (y_m, text) in [(34.1, "at the top"), (26.01, "at the top"), (25.9, "furthest 25.9 m")]
+        {
+            champion.evaluation.centre_y_m = y_m;
+            assert_eq!(sign(&champion), text);
+        }
+        champion.trial.stairs.steps += 1;
+        champion.evaluation.centre_y_m = 34.1;
+        assert_eq!(sign(&champion), "furthest 34.1 m", "it stands on a lower step");
     }
 
     #[test]

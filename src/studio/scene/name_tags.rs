@@ -87,13 +87,12 @@ fn draw(
     let margin = egui::vec2(theme::GAP * 1.5, theme::GAP * 0.75);
     let (tags, texts): (Vec<_>, Vec<_>) = racing()
         .filter_map(|lane| {
-            let y_m = lane.drawn_middle().y;
             let (head, text) = if are_many {
                 let name = lane.staged.label();
-                (view.limb(lane, 0)?, format!("{name}  {} m", decimals(y_m, 1)))
+                (view.limb(lane, 0)?, format!("{name}  {}", lane.place_in_words()))
             } else {
                 let at = view.point_of(fitness_line_end(lane))?;
-                let text = format!("middle block at {} m", decimals(y_m, 2));
+                let text = format!("middle block at {} m", decimals(lane.drawn_middle().y, 2));
                 (egui::Rect::from_pos(at), text)
             };
             let text = painter.layout_no_wrap(text, font.clone(), palette.text);

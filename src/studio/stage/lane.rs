@@ -6,6 +6,8 @@
 mod progress;
 mod renewed;
 
+pub(crate) use progress::AT_THE_TOP;
+
 use std::sync::Arc;
 
 use bevy::prelude::*;

@@ -130,6 +130,8 @@ impl BodyEditor {
             BodyCommand::Evolve => {
                 let champion = edited.unevaluated()?;
                 run.start_next_from(&champion, &format!("{}, edited", edited.original.name()))?;
+                run.begin_next()?;
+                self.edited = None;
             }
         }
         Ok(None)

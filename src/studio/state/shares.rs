@@ -70,6 +70,9 @@ impl ShareProgress {
     /// Describes the progress: "climb.gif  42 %, about 20 s left, about 6.1 MB".
     pub fn in_words(&self) -> String {
         let mut words = format!("{}  {}", self.name, in_percent(self.share));
+        if self.share == 0.0 {
+            words += ", preparing";
+        }
         if let Some(left) = self.left {
             words += &match left.as_secs() {
                 seconds @ ..90 => format!(", about {seconds} s left"),

@@ -31,8 +31,6 @@ pub(crate) struct Layout {
 const HIGH: f32 = 800.0;
 /// Width of the left panels, in points. All tab names fit.
 const LEFT: f32 = 384.0;
-/// Distance by which a tab bar scrolls to show its last tabs, in points. The dock area limits it to what is hidden.
-const TO_LAST_TABS: f32 = -1000.0;
 
 /// Returns whether a window of this size, in points, has room for panels below other panels.
 fn is_high(size: egui::Vec2) -> bool {
@@ -148,6 +146,25 @@ impl Layout {
         leaves.map(|(_, leaf)| (leaf.rect().width(), leaf.tabs.clone())).collect()
     }
 
+    /// Closes panels that open on demand, the one chosen longest ago first, while the tabs of a bar do not fit. `least_width`
+    /// returns the least width of a bar with these panels, in points. The panels in front stay.
+    pub fn fit_tabs(&mut self, least_width: impl Fn(&[PanelKind]) -> f32) {
+        let front = self.front_panels();
+        for (width, mut kinds) in self.tab_bars() {
+            // A bar has no width until it is drawn.
+            while width > 0.0 && least_width(&kinds) > width {
+                let is_spare =
+                    |kind: &&PanelKind| !PanelKind::INITIAL.contains(kind) && !front.contains(kind);
+                let chosen = |kind: &&PanelKind| self.chosen.iter().position(|of| of == *kind);
+                let Some(spare) = kinds.iter().filter(is_spare).min_by_key(chosen).copied() else {
+                    break;
+                };
+                self.close(spare);
+                kinds.retain(|kind| *kind != spare);
+            }
+        }
+    }
+
     /// Focuses a panel, and restores it if it was closed.
     pub fn open(&mut self, kind: PanelKind) {
         if self.is_to_be_laid_out {
@@ -160,9 +177,6 @@ impl Layout {
             self.state.set_focused_node_and_surface(path.node_path());
             if let Ok(leaf) = self.state.leaf_mut(path.node_path()) {
                 leaf.collapsed = false;
-                // A narrow bar has room for the names of the usual panels only.
-                leaf.scroll =
-                    if path.tab.0 < PanelKind::INITIAL.len() { 0.0 } else { TO_LAST_TABS };
             }
         }
     }

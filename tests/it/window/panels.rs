@@ -6,13 +6,13 @@ use super::display::Studio;
 fn button_and_menu_start_and_pause_a_run() {
     let Some(studio) = Studio::open("menu", "--preset quick --generations 1000") else { return };
     studio.wait_for_title("running");
-    studio.click_label("Pause");
+    studio.click_label("Pause evolution");
     studio.wait_for_title("paused");
     studio.choose("Run", "Start or pause evolution");
     studio.wait_for_title("running");
     studio.choose("Run", "Start or pause evolution");
     studio.wait_for_title("paused");
-    studio.click_label("Continue");
+    studio.click_label("Continue evolution");
     studio.wait_for_title("running");
 }
 

@@ -103,6 +103,8 @@ fn play(test: &str, seed: u64, count: u32) {
     }
     // xdotool ends after its last commands, or with the window that the last action closed.
     tool.wait().expect("xdotool");
+    // The first request asks if the random hand has left unfinished work, and then the second one quits.
+    studio.xdotool(&["key", "ctrl+q"]);
     assert_eq!(studio.end(), Some(0), "{}", studio.log());
     assert_no_fault(&studio.log());
     drop(studio);

@@ -31,7 +31,11 @@ pub fn changes_in_words(original: &Settings, changed: &Settings) -> String {
                 return differs(&listed).then(|| "other stairs".to_owned());
             }
             let was = before.iter().find(|before| before.path == listed.path);
-            let name = listed.setting.short_name();
+            // The names of switches and choices say little without their labels in the panels.
+            let name = match listed.setting.kind {
+                SettingKind::Choice(_) | SettingKind::Switch => listed.setting.label.to_lowercase(),
+                _ => listed.setting.short_name(),
+            };
             match was {
                 Some(was) if was.value == listed.value => None,
                 Some(_) => Some(match (&listed.value, listed.setting.kind) {
@@ -75,7 +79,8 @@ fn only_other(before: &SettingValue, now: &[f32]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::with_field;
+    use crate::evolve::{with_field, with_fields};
+    use crate::genome::ControllerKind;
 
     #[test]
     fn a_changed_angle_is_named_in_degrees() {
@@ -84,6 +89,16 @@ mod tests {
         assert_eq!(changes_in_words(&original, &limits), "bend limit 57.3°");
         let rise = with_field(&original, "rise_m", "0.7").expect("allowed");
         assert_eq!(changes_in_words(&original, &rise), "rise 0.7");
+    }
+
+    #[test]
+    fn a_choice_and_a_switch_are_named_as_the_panels_show_them() {
+        let mut original = Settings::default();
+        original.genome.controller = ControllerKind::Gait;
+        let changes = [("evolution.strategy", "body_ga"), ("genome.bodies.vary", "true")];
+        let bodies = with_fields(&original, changes).expect("allowed");
+        let words = "strategy Genetic algorithm of bodies, evolve bodies on";
+        assert_eq!(changes_in_words(&original, &bodies), words);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Units of panels that differ from the units of files: angles are stored in radians and shown in degrees.
 
 use super::range::NumberRange;
-use super::setting::Setting;
+use super::setting::{Setting, SettingKind};
 use super::value::SettingValue;
 
 /// A unit of panels, and its relation to the unit of files.
@@ -105,6 +105,11 @@ impl Setting {
         let unit = match value {
             SettingValue::Switch(true) => return "on".to_owned(),
             SettingValue::Switch(false) => return "off".to_owned(),
+            SettingValue::Name(name) => {
+                let SettingKind::Choice(choices) = self.kind else { return name.to_string() };
+                let chosen = choices().into_iter().find(|choice| choice.name == *name);
+                return chosen.map_or(name.to_string(), |choice| choice.title.to_owned());
+            }
             SettingValue::None => "",
             _ => self.display.map_or("", |display| display.unit),
         };

@@ -41,7 +41,7 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
             innermost.map_or(Effect::None, |(innermost, _)| Effect::Leave(innermost))
         }
         Command::Exam(ExamCommand::BackToOwnStairs) => Effect::Leave(Excursion::Exam),
-        Command::Body(BodyCommand::Close) => Effect::Leave(Excursion::Body),
+        Command::Body(BodyCommand::Close | BodyCommand::Evolve) => Effect::Leave(Excursion::Body),
         _ if shown.is_none() => Effect::None,
         Command::Plan(PlanCommand::KeepLane(_)) | Command::Stage(KeepChange) | Command::Run(_) => {
             Effect::Settle

@@ -3,6 +3,7 @@
 mod excursions;
 
 use super::*;
+use crate::studio::commands::BlockSize;
 use crate::studio::commands::StageCommand;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
@@ -146,6 +147,24 @@ fn a_rejected_command_is_no_undo_step() {
     friction_after(&mut app, &[set("-1"), Command::Run(RunCommand::SetThreads(0))]);
     assert_eq!(app.world().resource::<UndoHistory>().next(UndoDirection::Back), None);
     assert_eq!(app.world().resource::<Notices>().len(), 2);
+}
+
+#[test]
+fn quitting_asks_first_while_a_changed_body_would_be_lost() {
+    let mut app = app();
+    let is_over = |app: &App| app.world().resource::<QuitRequest>().0;
+    let change = BodyCommand::Set { block: 1, size: BlockSize::Height, value: 0.9 };
+    show_after(&mut app, Show::solo(climber(0)), Command::Body(BodyCommand::Edit));
+    friction_after(&mut app, &[Command::Body(change), Command::Quit]);
+    let modal = |app: &App| app.world().resource::<Workspace>().modal();
+    assert_eq!((modal(&app), is_over(&app)), (Some(Modal::Quit), false));
+    friction_after(&mut app, &[Command::Window(WindowCommand::CloseModal), Command::Quit]);
+    assert_eq!((modal(&app), is_over(&app)), (Some(Modal::Quit), false), "it asks again");
+    let mut idle = super::tests::app();
+    for app in [&mut app, &mut idle] {
+        friction_after(app, &[Command::Quit]);
+        assert!(is_over(app), "after the answer, or without anything to lose");
+    }
 }
 
 #[test]

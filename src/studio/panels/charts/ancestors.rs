@@ -18,7 +18,8 @@ const MAX_BRANCHES: usize = 150;
 const MIN_PER_GENERATION: usize = 3;
 
 /// Creates the chart of a line of ancestry.
-pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
+/// `founder` is the name of the snake from which the run started, if any.
+pub(super) fn view(settings: &Settings, ancestry: &Ancestry, founder: Option<&str>) -> ChartView {
     let unit = settings.trial.fitness.unit();
     let place = |ancestor: &Ancestor| {
         let fitness = f64::from(ancestor.fitness?);
@@ -52,16 +53,17 @@ pub(super) fn view(settings: &Settings, ancestry: &Ancestry) -> ChartView {
     let hit = |ancestor: &Ancestor| {
         let at = ancestor.place;
         let fitness = ancestor.fitness?;
-        let parents = ancestor.parents;
+        let (parents, is_founded) = (ancestor.parents, at.generation == 1 && founder.is_some());
         let words = move || {
             let name = generation_and_snake(at);
-            format!("{name}\nfitness {fitness:.2}{unit}\n{}", origin(parents))
+            format!("{name}\nfitness {fitness:.2}{unit}\n{}", origin(parents, is_founded))
         };
         let target = HitShape::Point(place(ancestor)?);
         Some(ChartHit::of(target, words, Pick::Individual(at), at))
     };
     let hits = ancestry.line.iter().chain(&ancestry.others).filter_map(|of| hit(of)).collect();
-    let figure = Figure::of("Ancestors of the best", chart).with_note(note_on_start(ancestry));
+    let figure =
+        Figure::of("Ancestors of the best", chart).with_note(note_on_start(ancestry, founder));
     ChartView::new(figure, vec![hits])
 }
 
@@ -70,7 +72,7 @@ fn best(ancestry: &Ancestry, line: Vec<[f64; 2]>) -> Series {
     match ancestry.line.as_slice() {
         [alone] => {
             let name = match alone.parents {
-                Parents::Distribution => "the best snake (CMA-ES: no ancestors)",
+                Parents::Distribution => "the best snake (without parents)",
                 Parents::None => "the best snake (random: no ancestors)",
                 Parents::One(_) | Parents::Two(..) | Parents::Unknown => {
                     "the best snake (ancestors not recorded)"
@@ -97,35 +99,37 @@ fn others(ancestry: &Ancestry) -> Vec<[f64; 2]> {
     ancestry.spreads.iter().flat_map(of).collect()
 }
 
-/// Describes the origin of a snake.
-fn origin(parents: Parents) -> String {
+/// Describes the origin of a snake. `is_founded` tells whether it is of the first generation of a run that started from a snake.
+fn origin(parents: Parents, is_founded: bool) -> String {
     match parents {
+        Parents::None if is_founded => "From the snake with which the run started".to_owned(),
         Parents::None => "Created at random".to_owned(),
         Parents::One(parent) => format!("Child of {}", snake_of_generation(parent)),
         Parents::Two(first, second) => {
             let [first, second] = [first, second].map(snake_of_generation);
             format!("Child of {first}\nand {second}")
         }
-        Parents::Distribution => {
-            "Drawn at random around the average that the search had learned".to_owned()
-        }
+        Parents::Distribution => "Drawn around the average of the best snakes so far".to_owned(),
         Parents::Unknown => "Parents unknown".to_owned(),
     }
 }
 
 /// Describes where the line of ancestry starts.
-fn note_on_start(ancestry: &Ancestry) -> String {
+fn note_on_start(ancestry: &Ancestry, founder: Option<&str>) -> String {
     let Some(first) = ancestry.line.last() else { return String::new() };
     let generation = first.place.generation;
-    match first.parents {
-        Parents::None => {
+    match (first.parents, founder) {
+        (Parents::None, Some(founder)) if generation == 1 => {
+            format!("The line starts in generation 1, which came from \"{founder}\".")
+        }
+        (Parents::None, _) => {
             format!("The line starts in generation {generation} with a random snake.")
         }
-        Parents::Distribution => {
-            "CMA-ES draws each snake at random around a shared average, so no snake has parents."
+        (Parents::Distribution, _) => {
+            "CMA-ES draws each snake around the average of the best, so no snake has parents. Genetic algorithm, under How it learns, has them."
                 .to_owned()
         }
-        Parents::One(_) | Parents::Two(..) | Parents::Unknown => {
+        (Parents::One(_) | Parents::Two(..) | Parents::Unknown, _) => {
             format!("Ancestors before generation {generation} were not recorded.")
         }
     }
@@ -138,18 +142,18 @@ mod tests {
     use snakes_core::evolve::StrategyKind;
 
     /// Creates the chart after three generations of a strategy. Also returns the generation of the best snake.
-    fn shown(strategy: StrategyKind) -> (ChartView, u32) {
+    fn shown(strategy: StrategyKind, founder: Option<&str>) -> (ChartView, u32) {
         let (settings, experiment) = experiment(3, |settings| {
             settings.evolution.strategy = strategy;
             settings.evolution.population = 8;
         });
         let generation = experiment.best().expect("a healthy snake").origin.generation;
-        (view(&settings, &experiment.ancestry()), generation)
+        (view(&settings, &experiment.ancestry(), founder), generation)
     }
 
     #[test]
     fn every_ancestor_has_a_hover_text_and_can_be_clicked() {
-        let (view, generation) = shown(StrategyKind::Halving);
+        let (view, generation) = shown(StrategyKind::Halving, None);
         let hits = &view.hits[0];
         assert_eq!(hits.len() as u32, generation, "one in each generation");
         let last = hits.last().expect("the first ancestor");
@@ -161,12 +165,23 @@ mod tests {
     }
 
     #[test]
+    fn the_first_generation_of_a_run_that_started_from_a_snake_is_not_called_random() {
+        let (view, _) = shown(StrategyKind::Halving, Some("climber, edited"));
+        let start = "The line starts in generation 1, which came from \"climber, edited\".";
+        assert_eq!(view.figure.note, start);
+        let words = view.hits[0].last().expect("the first ancestor").words();
+        assert!(words.contains("From the snake with which the run started"), "{words}");
+    }
+
+    #[test]
     fn missing_parents_are_explained() {
-        let (view, _) = shown(StrategyKind::CmaEs);
+        let (view, _) = shown(StrategyKind::CmaEs, None);
         assert_eq!(view.hits[0].len(), 1, "the best alone");
-        assert!(view.figure.note.contains("no snake has parents"), "{}", view.figure.note);
+        let note = &view.figure.note;
+        assert!(note.contains("no snake has parents"), "{note}");
+        assert!(note.contains(StrategyKind::Ga.title()), "{note}");
         let names: Vec<&str> = view.figure.listed().iter().map(|of| of.name.as_str()).collect();
-        assert!(names.contains(&"the best snake (CMA-ES: no ancestors)"), "{names:?}");
+        assert!(names.contains(&"the best snake (without parents)"), "{names:?}");
         assert!(!names.contains(&"the best and its ancestors"), "{names:?}");
     }
 }

@@ -184,7 +184,10 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
         )),
         ChartKind::Front => Some(pareto_front::view(settings, &exploration?.front)),
         ChartKind::Archive => Some(archive_map::view(settings, exploration?.archive.as_ref()?)),
-        ChartKind::Ancestors => Some(ancestors::view(settings, &exploration?.ancestry)),
+        ChartKind::Ancestors => {
+            let founder = run.plan_now.founder.as_ref().map(|founder| founder.name());
+            Some(ancestors::view(settings, &exploration?.ancestry, founder))
+        }
         ChartKind::Parents => parents::view(settings, &exploration?.parents),
         ChartKind::Runs => Some(runs::view(run)),
         ChartKind::Torques | ChartKind::Methods => None,

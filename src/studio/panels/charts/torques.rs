@@ -213,7 +213,10 @@ fn figure(child: &Subject, parent: Option<&Subject>) -> ChartView {
         Some(parent) => {
             format!("Solid lines: {}. Dashed lines: its parent, {}.", child.name, parent.name)
         }
-        None => format!("Solid lines: {}. Its parent is unknown.", child.name),
+        None => format!(
+            "Solid lines: {}. No parent is known to compare it with; snakes of CMA-ES and of random search have none.",
+            child.name
+        ),
     };
     let figure = Figure::of_several(&format!("Torques: {}", child.name), charts);
     let hits = of_child.iter().enumerate().map(|(index, lines)| hits(lines, of_parent.get(index)));

@@ -46,6 +46,9 @@ pub(crate) fn menu(
                 ui.set_max_height(height);
                 egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = 0.0;
+                    if menu == Menu::Share {
+                        ui.label(weak(ui, SHARED));
+                    }
                     for action in listed() {
                         entry(ui, action, situation, (has_toggles, is_on), commands);
                         if action.name == BEFORE_RECENT {
@@ -71,10 +74,19 @@ fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<C
     CommandButton::of(cancel, "Cancel writing the file", stop).show(ui, commands);
     let bar = egui::ProgressBar::new(share.share).desired_width(theme::COLUMN_WIDTHS[2]);
     ui.add(bar.desired_height(ui.spacing().interact_size.y * 0.5));
-    ui.add(egui::Label::new(share.in_words()).truncate());
+    let words = share.in_words();
+    let hint = match share.name.ends_with(".gif") {
+        true => format!(
+            "{words}. A GIF is drawn more than once, to choose its colours and its size; an MP4 takes less time"
+        ),
+        false => words.clone(),
+    };
+    ui.add(egui::Label::new(words).truncate()).on_hover_text(hint);
     ui.add_space(theme::GAP);
 }
 
+/// What the files of the menu Share contain.
+const SHARED: &str = "Snakes on the stage; of a whole generation, the best";
 /// Name of the action after which the submenu of recent files is placed.
 const BEFORE_RECENT: &str = "Open…";
 
@@ -223,6 +235,7 @@ mod tests {
         );
         for format in ExportFormat::ALL {
             click(&mut harness, "Share");
+            harness.get_by_label(SHARED);
             let ending = format!("(.{})", format.info().ending);
             harness.get_by_label_contains(&ending).click();
             harness.run();
@@ -240,6 +253,20 @@ mod tests {
         });
         harness.run();
         harness.get_by_label("climb.mp4  42 %, about 20 s left, about 6.1 MB");
+        harness.get_by_label_contains("climb.mp4").hover();
+        harness.run_steps(60);
+        assert!(harness.query_by_label_contains("an MP4 takes less time").is_none());
+        let (_, share, _) = harness.state_mut();
+        *share = Some(ShareProgress {
+            name: "climb.gif".to_owned(),
+            share: 0.0,
+            expected_bytes: None,
+            left: None,
+        });
+        harness.run();
+        harness.get_by_label("climb.gif  0 %, preparing").hover();
+        harness.run_steps(60);
+        harness.get_by_label_contains("an MP4 takes less time");
         click(&mut harness, "Cancel");
         let cancel = Command::Share(ShareCommand::Cancel);
         assert_eq!(harness.state_mut().2.pop(), Some(cancel));

@@ -37,8 +37,8 @@ const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Run,
         title: "Evolution runs in the background",
-        text: "Start and pause it here. Each generation tries many snakes and breeds from the best. \
-               When one beats all earlier ones, its generation appears on the stage.",
+        text: "Start and pause it here. Each generation tries many snakes, and those of the next are drawn around \
+               the average of the best. When one beats all earlier ones, its generation appears on the stage.",
         try_it: "Pause evolution, or start it",
         is_done_by: |command| {
             use RunCommand::{New, Pause, SingleGeneration, Start};
@@ -61,8 +61,8 @@ const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Charts,
         title: "See how evolution works",
-        text: "Compare the fitness of the generations, trace the ancestors of the best snake, or see which \
-               torques changed. Click any point to replay that snake.",
+        text: "Compare the fitness of the generations, see how the snakes of one differ, or which torques move \
+               their joints. Click any point to replay that snake.",
         try_it: "Click a point of the chart",
         is_done_by: |command| {
             matches!(command, Command::Stage(StageCommand::Show(_) | StageCommand::Join(_)))

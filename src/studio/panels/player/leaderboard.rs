@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use super::presented_caption::PresentedCaption;
 use super::strip_marks::landing_flag;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
@@ -69,21 +70,21 @@ pub(crate) fn leaderboard(
     }
     // If there is only one copy, a button below the lanes keeps it.
     let keeps_each = matches!(mode, StageMode::WhatIf { .. }) && lanes.len() > 2;
+    let ranking = ranking(lanes.iter().copied().filter(|lane| !lane.is_ghost), time_s);
     egui::Grid::new("board")
         .num_columns(4)
         .min_col_width(0.0)
         .spacing([theme::GAP, theme::GAP / 4.0])
         .show(ui, |ui| {
-            let racers = lanes.iter().copied().filter(|lane| !lane.is_ghost);
-            for (place, ranked) in ranking(racers, time_s).iter().enumerate() {
+            for (place, ranked) in ranking.iter().enumerate() {
                 let lane = lanes.iter().find(|lane| lane.number == ranked.lane);
                 let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
                 if is_winner {
                     // A coloured background would look like that of the selected row.
-                    landing_flag(ui, WINNER).on_hover_text(WINNER);
+                    landing_flag(ui, WINNER).on_hover_text(format!("{WINNER}. {ORDER}"));
                 } else {
                     let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
-                    ui.label(rank.color(palette.text_weak));
+                    ui.label(rank.color(palette.text_weak)).on_hover_text(ORDER);
                 }
                 lane_dot(ui, ranked.lane, theme::LANE_DOT);
                 let beginning = lane.and_then(|lane| lane.staged.beginning_in_words());
@@ -99,7 +100,7 @@ pub(crate) fn leaderboard(
                     (true, _) if is_narrow => "out".to_owned(),
                     (true, _) => "disqualified".to_owned(),
                     (false, Some(landed_s)) if is_narrow => format!("{landed_s:.2} s"),
-                    (false, Some(landed_s)) => format!("landed {landed_s:.2} s"),
+                    (false, Some(landed_s)) => format!("top {landed_s:.2} s"),
                     (false, None) => format!("{} m", decimals(ranked.y_m, 2)),
                 };
                 let color = match (ranked.counts(), ranked.landed_s) {
@@ -119,6 +120,9 @@ pub(crate) fn leaderboard(
                 ui.end_row();
             }
         });
+    if *mode == StageMode::Race {
+        latest_seen(ui, &ranking, time_s);
+    }
     if let StageMode::WhatIf { beside, current, .. } = mode
         && *current <= beside.len()
     {
@@ -135,10 +139,26 @@ pub(crate) fn leaderboard(
     });
 }
 
-/// Tooltip of the flag that replaces the first rank.
-const WINNER: &str = "First on the landing";
+/// Tooltip of the ranks.
+const ORDER: &str =
+    "Of the snakes that reach the top, the earlier one is ahead; of the others, the further one";
+/// Label of the flag that replaces the first rank.
+const WINNER: &str = "First at the top";
 /// Text that is shown while the next change of a what-if adds a lane.
 const NEXT_LANE: &str = "The next change gets a lane of its own.";
+
+/// Draws the first places at the latest moment of the race that was shown, after playback has gone back to an earlier one.
+fn latest_seen(ui: &mut egui::Ui, ranking: &[RankedLane], time_s: f64) {
+    let mut names: Vec<&str> = ranking.iter().map(|ranked| ranked.name.as_str()).collect();
+    names.sort_unstable();
+    let id = egui::Id::new(("latest of a race", names));
+    let latest: Option<(f64, String)> = ui.data(|data| data.get_temp(id));
+    if let Some((at_s, places)) = latest.filter(|(at_s, _)| *at_s > time_s) {
+        return explain(ui, &format!("At {at_s:.1} s: {places}"));
+    }
+    let places = PresentedCaption::of_race(ranking).in_words();
+    ui.data_mut(|data| data.insert_temp(id, (time_s, places)));
+}
 
 /// Describes the time from which all copies differ from the original, if it is the same for all.
 fn common_beginning(lanes: &[&Lane]) -> Option<String> {

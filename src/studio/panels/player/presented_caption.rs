@@ -86,16 +86,17 @@ impl PresentedCaption {
     fn of_one(lane: &Lane, time_s: f64, is_first_landing: bool) -> Self {
         let name = lane.staged.label();
         let title = match lane.landed_s(time_s) {
-            Some(_) if is_first_landing => format!("First landing! {name} has reached the top"),
+            Some(_) if is_first_landing => format!("{name} is the first to reach the top!"),
             _ => format!("{name}: {}", lane.progress_in_words(time_s)),
         };
         Self { title: CaptionPart::plain(title), details: Vec::new() }
     }
 
-    fn of_race(ranking: &[RankedLane]) -> Self {
+    /// Creates the caption of a race: its leader, and those behind.
+    pub fn of_race(ranking: &[RankedLane]) -> Self {
         let result = |ranked: &RankedLane| match ranked.landed_s {
             _ if !ranked.counts() => "out".to_owned(),
-            Some(landed_s) => format!("landed after {landed_s:.1} s"),
+            Some(landed_s) => format!("reached the top after {landed_s:.1} s"),
             None => format!("{} m", decimals(ranked.y_m, 1)),
         };
         let Some(leader) = ranking.first() else { return Self::default() };
@@ -111,6 +112,12 @@ impl PresentedCaption {
             title: CaptionPart { lane: Some(leader.lane), text: title },
             details: behind.collect(),
         }
+    }
+
+    /// Returns all parts of the caption in one line.
+    pub fn in_words(self) -> String {
+        let parts = std::iter::once(self.title).chain(self.details).map(|part| part.text);
+        parts.collect::<Vec<_>>().join(", ")
     }
 
     /// Creates the caption of a what-if: compares the latest copy, which is the last lane, with the original, which is the first.
@@ -226,7 +233,14 @@ mod tests {
         assert!(half_way.starts_with("climber: climbed "), "{half_way}");
         assert!(half_way.ends_with(" of 10 steps"), "{half_way}");
         assert!(title(14.0, false).starts_with("climber: at the top after "));
-        assert_eq!(title(14.0, true), "First landing! climber has reached the top");
+        assert_eq!(title(14.0, true), "climber is the first to reach the top!");
+    }
+
+    #[test]
+    fn a_place_is_a_distance_until_the_whole_snake_is_on_the_landing() {
+        let place = |time_s| lane(0, "climber", time_s).place_in_words();
+        assert!(place(6.0).ends_with(" m"), "{}", place(6.0));
+        assert_eq!(place(f64::MAX), "at the top");
     }
 
     #[test]
@@ -258,7 +272,7 @@ mod tests {
         let behind: Vec<_> = caption.details.iter().map(|of| (of.lane, &of.text[..2])).collect();
         assert_eq!(behind, [(Some(0), "2."), (Some(2), "3.")]);
         let winner = PresentedCaption::of_race(&ranking([lanes[1]], 15.0)).title.text;
-        assert!(winner.starts_with("early wins: landed after "), "{winner}");
+        assert!(winner.starts_with("early wins: reached the top after "), "{winner}");
     }
 
     #[test]
@@ -291,8 +305,10 @@ mod tests {
             assert!(title.right() <= 1000.0 && below.bottom() <= 625.0, "{title} {below}");
             (title.height(), below.top())
         };
-        let (short, long) =
-            ("Generation 12", "a champion with a name of many letters leads: landed after 12.3 s");
+        let (short, long) = (
+            "Generation 12",
+            "a champion with a name of many letters leads: reached the top after 12.3 s",
+        );
         assert!(band(short).0 > band(long).0 * 1.2);
         assert_eq!(band(short).1, band(long).1);
     }

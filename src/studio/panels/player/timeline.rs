@@ -15,7 +15,7 @@ use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::icons::{Icon, icon_button};
 use crate::studio::ui::text_rows::{at_right, explain, title_text, weak};
 use crate::studio::ui::theme;
-use snakes_core::score::Fitness;
+use snakes_core::score::{Fitness, arrived_y_m};
 
 /// Time span that the timeline shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -178,8 +178,11 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
     let steps = behaviour.map(|seen| format!("{} of {}", seen.steps_climbed, trial.stairs.steps));
     let more = match trial.fitness {
-        Fitness::Climb => "; the distance stops counting once the whole snake is on the landing",
-        _ => "",
+        Fitness::Climb if trial.stairs.steps > 0 => format!(
+            "; it stops counting at {:.2} m, where the whole snake is on the landing",
+            arrived_y_m(&trial.stairs, &lane.body)
+        ),
+        _ => String::new(),
     };
     let cost = match trial.energy_cost_per_kj {
         0.0 => String::new(),
@@ -188,15 +191,13 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     let fitness_hint =
         format!("Fitness if the trial ended now: {}{cost}{more}", trial.fitness.words());
     let fitness = evaluation.fitness;
-    let (fitness_name, fitness_text) = match trial.fitness {
-        // Near zero, the fitness has no minus.
-        of if of.is_along_y() => ("way", format!("{} m", decimals(fitness, 2))),
-        of @ Fitness::Share => ("way", of.text(fitness).trim_end_matches(" of the way").to_owned()),
-        of => ("fitness", format!("{}{}", decimals(fitness, 2), of.unit())),
+    let fitness_text = match trial.fitness {
+        of @ Fitness::Share => of.text(fitness).trim_end_matches(" of the way").to_owned(),
+        of => format!("{}{}", decimals(fitness, 2), of.unit()),
     };
     // The readings are ordered by importance, because a narrow window has room for only some of them.
     let all = [
-        (fitness_name, Some(fitness_text), fitness_hint.as_str()),
+        ("fitness", Some(fitness_text), fitness_hint.as_str()),
         ("steps", steps, "Steps that the middle block has climbed"),
         ("speed", Some(format!("{:.2} m/s", lane.speed_m_s())), "Speed of the middle block"),
         (
@@ -343,14 +344,23 @@ mod tests {
     }
 
     #[test]
+    fn the_fitness_says_where_it_stops_counting() {
+        let lane = climber_lane(0, "climber");
+        let mut timeline = timeline(&lane, SPAN, 900.0);
+        timeline.get_by_label("fitness").hover();
+        timeline.run_steps(60);
+        assert!(shows(&timeline, "it stops counting at 26.00 m"));
+    }
+
+    #[test]
     fn a_narrow_panel_lists_the_least_important_readings_behind_a_button() {
         let lane = climber_lane(0, "climber");
         let is_shown =
             |width: f32, name: &str| timeline(&lane, SPAN, width).query_by_label(name).is_some();
-        assert!(is_shown(900.0, "way") && is_shown(900.0, "energy"));
+        assert!(is_shown(900.0, "fitness") && is_shown(900.0, "energy"));
         assert!(!is_shown(900.0, "More readings"));
-        assert!(is_shown(540.0, "way") && !is_shown(540.0, "energy"));
-        for width in [400.0, 540.0] {
+        assert!(is_shown(580.0, "fitness") && !is_shown(580.0, "energy"));
+        for width in [400.0, 580.0] {
             let mut timeline = timeline(&lane, SPAN, width);
             clicked(&mut timeline, "More readings");
             assert!(shows(&timeline, "energy 0"), "{width}");

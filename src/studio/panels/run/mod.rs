@@ -86,9 +86,9 @@ impl EvolutionPanel {
         let differs = run.next_run_differs();
         let (longer, hint) = (run.extension_in_words(), "Evolve in the background, or pause");
         let first = match status {
-            RunStatus::Running => ("Pause", hint, RunCommand::Pause),
-            RunStatus::Ready => ("Start", hint, RunCommand::Start),
-            RunStatus::Paused => ("Continue", hint, RunCommand::Start),
+            RunStatus::Running => ("Pause evolution", hint, RunCommand::Pause),
+            RunStatus::Ready => ("Start evolution", hint, RunCommand::Start),
+            RunStatus::Paused => ("Continue evolution", hint, RunCommand::Start),
             RunStatus::Finished => (longer.as_str(), "Evolve this run further", RunCommand::Extend),
         };
         let single = "Finish one generation, then pause";
@@ -104,7 +104,7 @@ impl EvolutionPanel {
             true => "Start a run with the changed settings; the current run stays saved",
             false => "Start a run with the next seed; the current run stays saved",
         };
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             for (index, (label, hint, command)) in
                 [first, single].into_iter().take(shown).enumerate()
             {

@@ -25,7 +25,7 @@ fn sent(run: &CurrentRun, act: impl FnOnce(&mut Sent<'_>)) -> Vec<Command> {
 fn each_button_sends_its_command() {
     let run = run();
     for (label, command) in [
-        ("Start", Command::Run(RunCommand::Start)),
+        ("Start evolution", Command::Run(RunCommand::Start)),
         ("One generation", Command::Run(RunCommand::SingleGeneration)),
         ("New run", Command::Run(RunCommand::New)),
     ] {
@@ -53,7 +53,7 @@ fn the_first_button_pauses_a_running_run() {
     let mut run = run();
     run.start().expect("a thread");
     assert_eq!(
-        sent(&run, |harness| harness.get_by_label("Pause").click()),
+        sent(&run, |harness| harness.get_by_label("Pause evolution").click()),
         [Command::Run(RunCommand::Pause)]
     );
 }
@@ -103,7 +103,7 @@ fn a_typed_seed_is_sent_before_the_command_of_a_button() {
     let run = run();
     let sent = sent(&run, |harness| {
         type_into(harness, "Seed", "9");
-        click(harness, "Start");
+        click(harness, "Start evolution");
     });
     assert_eq!(sent, [Command::Plan(PlanCommand::SetSeed(9)), Command::Run(RunCommand::Start)]);
 }

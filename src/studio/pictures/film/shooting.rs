@@ -10,7 +10,7 @@ use super::order::FilmOrder;
 use super::plan::{FilmFrame, lanes_of};
 use crate::studio::pictures::offscreen::Offscreen;
 use crate::studio::pictures::render::over_heads;
-use crate::studio::stage::lane::Lane;
+use crate::studio::stage::lane::{AT_THE_TOP, Lane};
 use crate::studio::stage::ranking::ranking;
 use snakes_core::save::Picture;
 use snakes_lab::plot;
@@ -128,11 +128,9 @@ fn band(lanes: &[&Lane], time_s: f64) -> Option<FilmBand> {
     let first = lanes.first()?;
     let clock = format!("{time_s:.1} s");
     if lanes.len() == 1 {
-        let middle_m = first.drawn_middle().y;
-        let progress = first.progress_in_words(time_s);
-        let has_distance = progress.ends_with(" m");
-        let detail =
-            if has_distance { progress } else { format!("{progress}, at {middle_m:.1} m") };
+        let (progress, place) = (first.progress_in_words(time_s), first.place_in_words());
+        let has_place = progress.ends_with(" m") || place == AT_THE_TOP;
+        let detail = if has_place { progress } else { format!("{progress}, at {place}") };
         return Some(FilmBand { name: first.staged.label().to_owned(), detail, clock });
     }
     let mut places = (1..)

@@ -1,6 +1,11 @@
 //! Description of a snake's progress in words.
 
 use super::Lane;
+use crate::studio::ui::decimals::decimals;
+use snakes_core::score::arrived_y_m;
+
+/// Words for a snake that is on the landing as a whole, where its fitness no longer grows.
+pub const AT_THE_TOP: &str = "at the top";
 
 impl Lane {
     /// Returns the time at which the snake lands or, if it does not, at which it is furthest, in simulated seconds; the
@@ -13,6 +18,16 @@ impl Lane {
             Some(f64::from(history.sample_steps()) * sample as f64 * self.step_s)
         };
         self.landed_s(f64::INFINITY).or_else(furthest).unwrap_or_else(|| self.end_s())
+    }
+
+    /// Describes the place of the snake: the distance of its middle block, "12.3 m", until the whole snake is on the landing.
+    pub fn place_in_words(&self) -> String {
+        let (middle, stairs) = (self.drawn_middle(), &self.trial().stairs);
+        let is_up = stairs.steps > 0 && stairs.steps_under(middle.to_array()) == stairs.steps;
+        match is_up && middle.y >= arrived_y_m(stairs, &self.body) {
+            true => AT_THE_TOP.to_owned(),
+            false => format!("{} m", decimals(middle.y, 1)),
+        }
     }
 
     /// Describes the progress of the snake at this time in a few words.

@@ -1,7 +1,7 @@
 //! Tests of the editor of bodies.
 
 use super::*;
-use crate::studio::state::current_run::{climber, prepared_run};
+use crate::studio::state::current_run::{RunStatus, climber, prepared_run};
 use snakes_core::save::shipped_champion;
 use snakes_core::world::PhysicsEngine;
 
@@ -102,11 +102,12 @@ fn a_change_just_before_a_tuning_is_shown_and_the_next_tuning_tries_other_gaits(
 }
 
 #[test]
-fn the_next_run_can_begin_with_the_edited_body() {
+fn a_run_starts_from_the_edited_body_and_closes_the_editor() {
     let (mut editor, mut run) = editing();
     let change = BodyCommand::Change { block: 3, change: BodyChange::Duplicate };
     editor.apply(&change, None, &mut run).expect("allowed");
     editor.apply(&BodyCommand::Evolve, None, &mut run).expect("a founder");
+    assert_eq!((editor.edited().is_none(), run.status()), (true, RunStatus::Running));
     assert_eq!(run.next_founder(), Some("climber, edited"));
     assert!(run.next_settings().genome.bodies.vary);
 }

@@ -150,7 +150,7 @@ fn a_reset_that_discards_finished_generations_says_so_and_offers_to_resume_them(
     let folder = run.source.folder.clone();
     let mut notices = Notices::default();
     run.apply(&RunCommand::Reset, &mut notices).expect("allowed");
-    let news = "test, seed 2 begins anew: \"Start\" replaces its 2 finished generations.";
+    let news = "test, seed 2 begins anew: \"Start evolution\" replaces its 2 finished generations.";
     assert_eq!(notices.last(), Some(news));
     let resume = Command::Run(RunCommand::Continue(folder));
     assert_eq!(notices.last_offers(), [("Resume it instead".to_owned(), resume)]);

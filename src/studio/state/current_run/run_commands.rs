@@ -34,7 +34,7 @@ impl CurrentRun {
                 self.reset();
                 if finished > 0 && self.source.folder == folder {
                     let text = format!(
-                        "{}, seed {} begins anew: \"Start\" replaces its {finished} finished generations.",
+                        "{}, seed {} begins anew: \"Start evolution\" replaces its {finished} finished generations.",
                         plan.preset, plan.seed
                     );
                     let resume = Command::Run(RunCommand::Continue(folder));

@@ -41,8 +41,9 @@ pub fn ask(question: &FileQuestion) -> io::Result<BackgroundTask<DialogAnswer>> 
         }
         FileQuestion::Share(format, name) => {
             let info = format.info();
-            let named =
-                dialog.set_title(info.title).set_file_name(format!("{name}.{}", info.ending));
+            let named = dialog
+                .set_title(format!("{} of {name}", info.title))
+                .set_file_name(format!("{name}.{}", info.ending));
             let file = named.add_filter(info.title, &[info.ending]).save_file();
             Box::pin(async { file.await.into_iter().collect() })
         }

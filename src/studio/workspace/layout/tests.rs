@@ -52,6 +52,30 @@ fn a2_further_panels_open_as_tabs_beside_those_of_their_side_and_never_below_the
 }
 
 #[test]
+fn tabs_that_do_not_fit_replace_those_that_were_chosen_longest_ago() {
+    let size = egui::vec2(1280.0, 720.0);
+    let mut layout = laid_out(1280.0);
+    let demanded = [PanelKind::Charts, PanelKind::Senses, PanelKind::Charts, PanelKind::Champions];
+    for kind in demanded.into_iter().chain([PanelKind::Body]) {
+        layout.open(kind);
+        layout.state_in(size, true);
+    }
+    let width_of_tab = LEFT / 6.5;
+    layout.fit_tabs(|kinds| kinds.len() as f32 * width_of_tab);
+    assert!(layout.has(PanelKind::Senses), "a bar that is not drawn has no width");
+    for (_, leaf) in layout.state.iter_leaves_mut() {
+        leaf.set_rect(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(LEFT, 600.0)));
+    }
+    layout.fit_tabs(|kinds| kinds.len() as f32 * width_of_tab);
+    let tabs = layout.tab_bars().pop().expect("a bar").1;
+    assert_eq!(tabs[..4], *PanelKind::INITIAL);
+    assert_eq!(tabs[4..], [PanelKind::Champions, PanelKind::Body]);
+    layout.fit_tabs(|_| f32::INFINITY);
+    let tabs = layout.tab_bars().pop().expect("a bar").1;
+    assert_eq!(tabs[4..], [PanelKind::Body], "the panel in front stays");
+}
+
+#[test]
 fn a_tab_is_offered_beside_the_others_while_it_is_useful_and_stays_once_it_was_chosen() {
     let mut layout = laid_out(1280.0);
     let size = egui::vec2(1280.0, 720.0);

@@ -49,7 +49,7 @@ fn wave_torques_come_from_the_rollout() {
     let Shape::Line(bend) = &chart.series[0].shape else { panic!("a line") };
     assert_eq!(bend.len(), trial.steps() as usize);
     assert!(bend.iter().any(|point| point[1].abs() > 1.0));
-    assert!(view.figure.note.contains("Its parent is unknown"), "{}", view.figure.note);
+    assert!(view.figure.note.contains("No parent is known"), "{}", view.figure.note);
 }
 
 /// Waits until the torques are computed, and returns the charts.

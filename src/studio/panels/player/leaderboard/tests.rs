@@ -62,6 +62,23 @@ fn the_winner_has_a_flag_and_only_the_selected_snake_the_look_of_a_selection() {
     }
 }
 
+#[test]
+fn the_latest_result_of_a_race_stays_after_playback_went_back() {
+    let mut lanes = [climber_lane(1, "first"), climber_lane(2, "second")];
+    lanes.iter_mut().for_each(Lane::finish_lookahead);
+    let end_s = lanes[0].end_s();
+    let time_s = std::cell::Cell::new(end_s);
+    let mut board = panel([800.0, 600.0], |ui, commands| {
+        let lanes: Vec<&Lane> = lanes.iter().collect();
+        leaderboard(ui, &lanes, &StageMode::Race, 1, time_s.get(), (false, true), commands);
+    });
+    let result = format!("At {end_s:.1} s: first wins: reached the top after ");
+    assert!(board.query_by_label_contains(&result).is_none(), "the ranking shows it");
+    time_s.set(0.5);
+    board.run();
+    board.get_by_label_contains(&result);
+}
+
 /// Returns the background colour of a text, if it has one.
 fn background_of(shape: &egui::Shape) -> Option<egui::Color32> {
     let egui::Shape::Text(text) = shape else { return None };
