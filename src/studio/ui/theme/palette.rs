@@ -312,12 +312,6 @@ impl Palette {
         }
     }
 
-    /// Returns the colour of an item in a list without a meaningful order, such as a wave of a library. After ten items
-    /// the colours repeat.
-    pub fn category(&self, number: usize) -> Color32 {
-        self.role(Role::Species(number as u32))
-    }
-
     /// Returns the colour of a lane, used on the snake's collar, beside its lane, in lists and in charts. The first
     /// lane is 0; after ten lanes the colours repeat.
     pub fn lane_color(&self, number: usize) -> Color32 {
