@@ -59,7 +59,8 @@ impl LibraryPanel {
         let place_of = |row: usize| library.items[rows[row]].place();
         let now = self
             .selection
-            .cursor()
+            .cursor
+            .as_ref()
             .and_then(|cursor| (0..rows.len()).find(|row| place_of(*row) == cursor));
         let next = match (key, now) {
             (Press::Home, _) => 0,

@@ -33,7 +33,7 @@ use snakes_core::save::library::{EXPORTS, SavePlace};
 use actions::{LibraryAction, LibraryActionKind, actions};
 use fields::{NotesField, PathPrompt, RenameField};
 use order::{SortOrder, SortedItems};
-use row::{RowStyle, name_rect, row};
+use row::{name_rect, row};
 use selection::ChosenSaves;
 
 /// The library panel, with its state between frames.
@@ -156,7 +156,7 @@ impl LibraryPanel {
         }
         if library.export_requests != self.export_requests {
             self.export_requests = library.export_requests;
-            if self.selection.places().len() == 0 {
+            if self.selection.chosen.is_empty() {
                 let text = "Select what to export in the library first.".to_owned();
                 self.sent.push(Command::Notify(text));
             } else {
@@ -170,7 +170,7 @@ impl LibraryPanel {
         let size = egui::vec2(ui.available_width(), height);
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
         let list = ui.interact(rect, id, Sense::FOCUSABLE);
-        let cursor = self.selection.cursor().and_then(|place| library.item(place));
+        let cursor = self.selection.cursor.as_ref().and_then(|place| library.item(place));
         let now = cursor.map_or("nothing selected".to_owned(), LibraryItem::label);
         let list = named(list, WidgetType::Other, &format!("Saves: {now}"));
         let role = egui::accesskit::Role::ListBox;
@@ -216,7 +216,7 @@ impl LibraryPanel {
                 let top = row as f32 * theme::LIBRARY_ROW_HEIGHT - self.offset;
                 top < self.height && top + theme::LIBRARY_ROW_HEIGHT > 0.0
             };
-            let cursor = self.selection.cursor();
+            let cursor = self.selection.cursor.as_ref();
             let cursor = cursor.filter(|place| row_of(place).is_some_and(was_in_sight));
             self.scroll_to = self.scroll_to.take().or(cursor.cloned());
             self.height = view;
@@ -234,7 +234,7 @@ impl LibraryPanel {
                 let size = egui::vec2(ui.available_width(), theme::LIBRARY_ROW_HEIGHT);
                 let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
                 self.row(ui, rect, library, item, has_keyboard);
-                if !item.is_read() {
+                if item.read.is_none() {
                     visible.push(item.place().clone());
                 }
             }
@@ -255,11 +255,9 @@ impl LibraryPanel {
         has_keyboard: bool,
     ) {
         let place = item.place();
-        let style = RowStyle {
-            is_chosen: self.selection.has(place),
-            is_cursor: has_keyboard && self.selection.cursor() == Some(place),
-        };
-        let response = row(ui, rect, item, style);
+        let is_chosen = self.selection.chosen.contains(place);
+        let has_cursor = has_keyboard && self.selection.cursor.as_ref() == Some(place);
+        let response = row(ui, rect, item, is_chosen, has_cursor);
         if self.renaming.as_ref().is_some_and(|renaming| renaming.place == *place) {
             return self.edit_name(ui, name_rect(rect));
         }
@@ -275,7 +273,7 @@ impl LibraryPanel {
             }
             self.wants_keyboard = true;
         }
-        if response.secondary_clicked() && !style.is_chosen {
+        if response.secondary_clicked() && !is_chosen {
             self.selection.only(place);
         }
         if response.double_clicked() {
@@ -291,7 +289,7 @@ impl LibraryPanel {
 
     /// Returns the items of the selected saves.
     fn chosen<'a>(&self, library: &'a Library) -> Vec<&'a LibraryItem> {
-        self.selection.places().filter_map(|place| library.item(place)).collect()
+        self.selection.chosen.iter().filter_map(|place| library.item(place)).collect()
     }
 
     /// Recomputes the actions only after a change, because many saves may be selected.
@@ -311,7 +309,7 @@ impl LibraryPanel {
                 self.scroll_to = Some(place);
             }
             Some(LibraryActionKind::Export) => {
-                let places = self.selection.places().cloned().collect();
+                let places = self.selection.chosen.iter().cloned().collect();
                 self.sent.push(Command::File(FileCommand::Ask(FileQuestion::Export(places))));
             }
             Some(LibraryActionKind::ShowChampions(run)) => {
@@ -330,7 +328,7 @@ impl LibraryPanel {
             0 => String::new(),
             unread => format!(", {unread} not read yet"),
         };
-        let chosen = self.selection.places().len();
+        let chosen = self.selection.chosen.len();
         let several = if chosen > 1 { format!(", {chosen} selected") } else { String::new() };
         explain(ui, &format!("{found}{reading}{several}"));
         if let Some(reason) = self.renaming.as_ref().and_then(RenameField::problem) {
@@ -339,7 +337,7 @@ impl LibraryPanel {
         self.update_actions(library);
         let wanted = details::buttons(ui, &self.actions.1);
         self.path_field(ui);
-        let only = self.selection.places().next().filter(|_| chosen == 1);
+        let only = self.selection.chosen.iter().next().filter(|_| chosen == 1);
         let only = only.and_then(|place| library.item(place));
         self.keep_notes_of_others(only);
         if let Some(item) = only {
