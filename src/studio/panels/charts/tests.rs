@@ -283,7 +283,8 @@ fn in_a_narrow_panel_axes_have_titles_with_units_and_a_legend_says_what_a_click_
 fn an_individual_in_a_lane_has_the_dot_of_that_lane() {
     let run = explored_run();
     let origin = run.reports()[1].champion.as_ref().expect("a healthy snake").origin.clone();
-    let champion = ShownChampion::Found { generation: 2, individual: origin.individual };
+    let place = IndividualId { generation: 2, individual: origin.individual };
+    let champion = ShownChampion::Found(place);
     let view = view_of(ChartKind::Fitness, &run).expect("explored");
     for lane in [Some(3), None] {
         let shown = [ShownLane { champion, lane }];
