@@ -97,12 +97,12 @@ impl LibraryPanel {
         if self.order.update(library, &self.search, self.sort, now_s) {
             // An action must never concern a save that the search hides.
             let shown: BTreeSet<&SavePlace> =
-                self.order.rows().iter().map(|row| library.items[*row].place()).collect();
+                self.order.rows.iter().map(|row| library.items[*row].place()).collect();
             self.selection.retain(|place| shown.contains(place));
         }
         // The details of a selected save leave a part of the panel to the rows of the list; they scroll instead.
         let rest = available - above - self.details_height;
-        let rows = (self.order.rows().len() as f32 + 0.5) * theme::LIBRARY_ROW_HEIGHT;
+        let rows = (self.order.rows.len() as f32 + 0.5) * theme::LIBRARY_ROW_HEIGHT;
         let least = rows.min(available * theme::LEAST_LIST_SHARE);
         self.list(ui, library, rest.max(least).floor());
         let details = egui::ScrollArea::vertical().id_salt("details").auto_shrink([false, true]);
@@ -194,7 +194,7 @@ impl LibraryPanel {
     }
 
     fn rows(&mut self, ui: &mut egui::Ui, library: &Library, has_keyboard: bool) {
-        let rows = self.order.rows();
+        let rows = self.order.rows.clone();
         if rows.is_empty() {
             let text = match (library.problem.as_deref(), library.is_listed, self.search.is_empty())
             {
@@ -264,7 +264,7 @@ impl LibraryPanel {
         if response.clicked() {
             let held = ui.input(|input| input.modifiers);
             if held.shift {
-                let rows = self.order.rows();
+                let rows = self.order.rows.clone();
                 self.selection.extend(place, rows.iter().map(|row| library.items[*row].place()));
             } else if held.command {
                 self.selection.toggle(place);
@@ -321,7 +321,7 @@ impl LibraryPanel {
 
     /// Draws the details of the selection and its actions.
     fn footer(&mut self, ui: &mut egui::Ui, library: &Library) {
-        let (shown, all) = (self.order.rows().len(), library.items.len());
+        let (shown, all) = (self.order.rows.len(), library.items.len());
         let found =
             if shown == all { format!("{all} saves") } else { format!("{shown} of {all} saves") };
         let reading = match library.unread {
