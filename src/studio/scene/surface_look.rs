@@ -126,12 +126,10 @@ fn log_share(value: f32, from: f32, to: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::studio::ui::theme::Theme;
-    use snakes_core::save::shipped_presets;
+    use snakes_core::save::load_preset;
 
     fn shipped(name: &str) -> Surface {
-        let presets = shipped_presets().expect("well formed");
-        let preset = presets.into_iter().find(|preset| preset.name == name).expect("shipped");
-        preset.settings.trial.surface
+        load_preset(name).expect("shipped").settings.trial.surface
     }
 
     /// Returns the surfaces that a picture must make distinguishable without labels.

@@ -249,6 +249,13 @@ pub(super) const VERTICAL_VIEW_RAD: f32 = std::f32::consts::FRAC_PI_4;
 /// Ratio of the picture's size to that of its content.
 const MARGIN: f32 = 1.12;
 
+/// Returns the centre of the box around points.
+pub(crate) fn middle_of(points: impl IntoIterator<Item = Vec3>) -> Vec3 {
+    let around = |(least, most): (Vec3, Vec3), point: Vec3| (least.min(point), most.max(point));
+    let (least, most) = points.into_iter().fold((Vec3::MAX, Vec3::MIN), around);
+    (least + most) / 2.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
