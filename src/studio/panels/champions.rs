@@ -13,7 +13,7 @@ use crate::studio::ui::buttons::{CommandButton, command_box, show_or_join};
 use crate::studio::ui::check_box::check_box;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
-use snakes_core::evolve::Champion;
+use snakes_core::evolve::{Champion, IndividualId};
 use snakes_core::save::LoadedChampion;
 use snakes_lab::run::GenerationReport;
 
@@ -161,9 +161,10 @@ impl ChampionsPanel {
                     continue;
                 };
                 let individual = champion.origin.individual;
+                let found = ShownChampion::Found(IndividualId { generation, individual });
                 let mark = summary.best.filter(|(best, _)| *best == generation);
                 let row = ChampionRow {
-                    shown: view.lane_of(ShownChampion::Found { generation, individual }),
+                    shown: view.lane_of(found),
                     name: &mark.map_or(name.clone(), |(_, mark)| format!("{name}, {mark}")),
                     champion,
                     climb: self.climbs.of(champion),

@@ -142,7 +142,7 @@ fn prediction(
             }
         });
     }
-    if !progress.plays.finished().is_empty() {
+    if !progress.plays.finished.is_empty() {
         plays(ui, &progress.plays);
     } else if let Some(trial) = progress.trial.as_ref().filter(|_| progress.is_revealed) {
         lanes(ui, &progress.lanes, trial.fitness);
@@ -201,7 +201,7 @@ fn heading(ui: &mut egui::Ui, text: &str) {
 
 /// Returns the next task of a reader who compares playbacks.
 fn next_play(plays: &Plays) -> &'static str {
-    match plays.finished() {
+    match plays.finished.as_slice() {
         [] => "Play it to its end. The result appears after two speeds.",
         _ => {
             "Now choose another speed (the field with × below the stage), and play it to its end again."
@@ -212,7 +212,7 @@ fn next_play(plays: &Plays) -> &'static str {
 /// Draws a table of the finished playbacks, with all digits of the results.
 fn plays(ui: &mut egui::Ui, plays: &Plays) {
     table(ui, "plays", &["Speed", "Ends at", "Hash of the motion"], |ui| {
-        for play in plays.finished() {
+        for play in &plays.finished {
             ui.label(format!("× {}", play.speed));
             ui.label(format!("{} m", play.evaluation.centre_y_m));
             hash(ui, play.evaluation.trace_hash);

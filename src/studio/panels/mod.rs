@@ -149,7 +149,7 @@ fn draw(
         panels.world.unfold(&workspace.unfolded);
         panels.evolution.unfold(&workspace.unfolded);
     }
-    theme::show(&context, *data.theme);
+    context.set_theme(egui::Theme::from(*data.theme));
     workspace.scale.fit(context.content_rect().size() * context.zoom_factor());
     let is_presenting = workspace.is_presenting;
     let scale = match is_presenting {

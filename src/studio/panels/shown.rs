@@ -13,12 +13,7 @@ pub(crate) enum ShownChampion {
     /// A champion with which the studio was opened; the first is 0.
     Opening(usize),
     /// An individual of the current run.
-    Found {
-        /// Generation that found the individual; the first is 1.
-        generation: u32,
-        /// Index of the individual in its generation.
-        individual: u32,
-    },
+    Found(IndividualId),
 }
 
 impl ShownChampion {
@@ -28,7 +23,7 @@ impl ShownChampion {
             ChampionSource::Opened(index) => Some(Self::Opening(index)),
             ChampionSource::Run(of) if of == run => {
                 let Origin { generation, individual, .. } = staged.champion().origin;
-                Some(Self::Found { generation, individual })
+                Some(Self::Found(IndividualId { generation, individual }))
             }
             ChampionSource::Library(_)
             | ChampionSource::Run(_)
@@ -40,7 +35,7 @@ impl ShownChampion {
     /// Returns the place of the champion in the current run, if it is from there.
     pub(crate) fn place(self) -> Option<IndividualId> {
         match self {
-            Self::Found { generation, individual } => Some(IndividualId { generation, individual }),
+            Self::Found(place) => Some(place),
             Self::Opening(_) => None,
         }
     }

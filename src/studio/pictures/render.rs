@@ -6,7 +6,7 @@ use super::offscreen::Offscreen;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::error::StudioError;
-use crate::studio::scene::camera::view::CameraView;
+use crate::studio::scene::camera::view::{CameraView, middle_of};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{StageMode, lanes};
@@ -48,7 +48,7 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
     }
     let (width, height) = scene.size;
     let points = in_view(&lanes);
-    let target = middle_of(&points);
+    let target = middle_of(points.iter().copied());
     let mut view = CameraView::of(scene.camera, lanes.len());
     view.distance_m = view.distance_to_see(target, points, width as f32 / height.max(1) as f32);
     let place = view.looking_at(target);
@@ -102,12 +102,4 @@ pub(super) fn in_view<'l>(lanes: impl IntoIterator<Item = &'l Lane>) -> Vec<Vec3
         points.extend([middle - half_width, middle + half_width]);
     }
     points
-}
-
-/// Returns the centre of the box around points.
-pub(super) fn middle_of(points: &[Vec3]) -> Vec3 {
-    let (least, most) = points
-        .iter()
-        .fold((Vec3::MAX, Vec3::MIN), |(least, most), point| (least.min(*point), most.max(*point)));
-    (least + most) / 2.0
 }

@@ -27,7 +27,7 @@ use crate::studio::ui::theme::{Palette, Theme};
 use crate::studio::ui::viewport::StageArea;
 
 use rig::CameraRig;
-use view::{CameraView, VERTICAL_VIEW_RAD};
+use view::{CameraView, VERTICAL_VIEW_RAD, middle_of};
 
 /// Returns the transform of a fixed camera, from the default side, that shows the range of y from `from_y_m` to `to_y_m`, in metres.
 pub(crate) fn overview_transform(from_y_m: f32, to_y_m: f32) -> Transform {
@@ -198,12 +198,7 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
         Vec3::new(lane.offset().x, middle.y, middle.z.max(0.0))
     };
     let chosen = lanes().filter(|lane| rig.lane.is_none_or(|number| number == lane.number));
-    let (mut least, mut most) = (Vec3::MAX, Vec3::MIN);
-    chosen.map(|lane| of_one(&lane)).for_each(|middle| {
-        least = least.min(middle);
-        most = most.max(middle);
-    });
-    let goal = (least + most) / 2.0;
+    let goal = middle_of(chosen.map(|lane| of_one(&lane)));
     match rig.anchor {
         None => rig.anchor = Some(goal),
         Some(anchor) if rig.follows => {

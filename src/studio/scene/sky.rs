@@ -195,12 +195,10 @@ fn disc() -> Mesh {
     });
     to_fading_mesh(solid, |at| {
         let ring = at.distance(middle) / (RADIUS_M * DISC_RAD);
-        if ring < 1.05 {
-            1.0
-        } else if ring < 2.0 {
-            0.3
-        } else {
-            0.0
+        match ring {
+            ..1.05 => 1.0,
+            ..2.0 => 0.3,
+            _ => 0.0,
         }
     })
 }

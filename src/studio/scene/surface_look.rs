@@ -67,7 +67,7 @@ impl SurfaceLook {
                 (of_woven, woven),
                 (of_mud, mud),
             ];
-            layers.into_iter().fold(stone, |below, (own, covers)| mix(below, own, covers))
+            layers.into_iter().fold(stone, |below: f32, (own, covers)| below.lerp(own, covers))
         };
         let dry_roughness = through([0.95, 0.10, 0.22, 0.70, 0.62, 0.80]);
         Self {
@@ -80,7 +80,7 @@ impl SurfaceLook {
             soft,
             wet,
             speckle: through([1.0, 0.0, 0.0, 0.2, 0.0, 0.1]),
-            roughness: mix(dry_roughness, dry_roughness.min(0.28), wet),
+            roughness: dry_roughness.lerp(dry_roughness.min(0.28), wet),
             gloss: through([0.2, 1.0, 0.55, 0.3, 0.4, 0.3]).max(wet * 0.6),
         }
     }
@@ -122,21 +122,14 @@ fn log_share(value: f32, from: f32, to: f32) -> f32 {
     share(libm::logf(value.max(1.0e-9)), libm::logf(from), libm::logf(to))
 }
 
-/// Interpolates linearly from `from`, at share 0, to `to`, at share 1.
-pub(crate) fn mix(from: f32, to: f32, share: f32) -> f32 {
-    from + (to - from) * share
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::studio::ui::theme::Theme;
-    use snakes_core::save::shipped_presets;
+    use snakes_core::save::load_preset;
 
     fn shipped(name: &str) -> Surface {
-        let presets = shipped_presets().expect("well formed");
-        let preset = presets.into_iter().find(|preset| preset.name == name).expect("shipped");
-        preset.settings.trial.surface
+        load_preset(name).expect("shipped").settings.trial.surface
     }
 
     /// Returns the surfaces that a picture must make distinguishable without labels.

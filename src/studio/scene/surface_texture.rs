@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 
 use super::mipmaps::Channel;
-use super::surface_look::{SurfaceLook, mix};
+use super::surface_look::SurfaceLook;
 
 /// Side of the square that a texture covers, in metres.
 pub(crate) const TILE_M: f32 = 4.0;
@@ -44,11 +44,11 @@ impl Grain {
         let dark = rise(noise(x, y, 64, 3), 0.66, 0.80);
         let pale = rise(noise(x, y, 64, 4), 0.70, 0.82);
         let stone = 0.86 + 0.08 * (clouds - 0.5) - 0.17 * dark + 0.10 * pale;
-        let mut value = mix(0.90, stone, share(speckle));
+        let mut value = 0.90.lerp(stone, share(speckle));
         let drawn: [Drawn; 5] = [ice, glue, rubber, woven, mud];
         for (step, of) in layers.into_iter().zip(drawn) {
             if step > 0 {
-                value = mix(value, of(x, y), share(step));
+                value = value.lerp(of(x, y), share(step));
             }
         }
         value.clamp(0.0, 1.0)
@@ -92,7 +92,7 @@ fn ice(x: usize, y: usize) -> f32 {
     let is_cracked = rise(noise(x, y, 5, 13), 0.45, 0.65);
     let cracks = 1.0 - rise(between_cells(x, y, 4, 14), 0.0, 0.05);
     let sheen = 0.66 + 0.16 * clouds;
-    mix(sheen, 1.0, cracks * is_cracked)
+    sheen.lerp(1.0, cracks * is_cracked)
 }
 
 /// Draws thick, smooth waves with highlights.
@@ -126,7 +126,7 @@ fn mud(x: usize, y: usize) -> f32 {
     let height = |x, y| noise(x, y, 24, 41) * 0.35 + noise(x, y, 9, 42) * 0.65;
     let puddle = rise(height(x, y), 0.42, 0.30);
     let lumps = 0.62 + 2.2 * slope(x, y, height) + 0.3 * (height(x, y) - 0.5);
-    mix(lumps, 0.50, puddle)
+    lumps.lerp(0.50, puddle)
 }
 
 /// Returns how far a relief rises towards the corner of the texture from which it is lit.
@@ -154,9 +154,9 @@ pub(super) fn noise(x: usize, y: usize, cells: usize, seed: u32) -> f32 {
     let corner = |right: usize, up: usize| {
         random(((column + right) % cells) as u32, ((row + up) % cells) as u32, seed)
     };
-    let low = mix(corner(0, 0), corner(1, 0), right);
-    let high = mix(corner(0, 1), corner(1, 1), right);
-    mix(low, high, up)
+    let low = corner(0, 0).lerp(corner(1, 0), right);
+    let high = corner(0, 1).lerp(corner(1, 1), right);
+    low.lerp(high, up)
 }
 
 /// Returns the distance from the border between irregular cells, `cells` per side, as a share of a cell.

@@ -8,7 +8,7 @@ use crate::studio::stage::{MAX_LANES, Show, evenly};
 use snakes_core::evolve::Champion;
 
 /// Number of generations that race if there are more generations than lanes: as many as in the report.
-const CHOSEN_GENERATIONS: usize = 6;
+pub(crate) const CHOSEN_GENERATIONS: usize = 6;
 
 /// Returns the champion that was chosen; `None` if it is not kept any more.
 pub(crate) fn champion_of(
@@ -63,13 +63,8 @@ pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, S
         return Err("Nothing to race yet: finish two generations first.".to_owned());
     }
     let number = run.number();
-    let chosen = evenly_chosen(champions.len());
+    let chosen = evenly(champions.len(), MAX_LANES, CHOSEN_GENERATIONS);
     Ok(chosen.map(|index| StagedChampion::from_run(champions[index], number)).collect())
-}
-
-/// Returns which of `count` champions race: all indices or, if there are many, some at equal distances.
-pub(crate) fn evenly_chosen(count: usize) -> impl Iterator<Item = usize> {
-    evenly(count, MAX_LANES, CHOSEN_GENERATIONS)
 }
 
 /// Returns the best snakes of a generation, or of the latest one.

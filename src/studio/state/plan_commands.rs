@@ -34,7 +34,8 @@ fn partner_in_words((field, name): (&str, &str)) -> String {
     }
 }
 
-fn borrowed(changes: &[(String, String)]) -> Vec<(&str, &str)> {
+/// Borrows the names and texts of changes.
+pub(crate) fn borrowed(changes: &[(String, String)]) -> Vec<(&str, &str)> {
     changes.iter().map(|(field, text)| (field.as_str(), text.as_str())).collect()
 }
 

@@ -179,7 +179,7 @@ pub fn flat(color: Color) -> Color32 {
     Color32::from_rgba_unmultiplied(red, green, blue, alpha)
 }
 
-/// Configures both egui themes. [`show`] selects the active one.
+/// Configures both egui themes. [`egui::Context::set_theme`] selects the active one.
 pub fn apply(context: &egui::Context) {
     context.all_styles_mut(|style| {
         style.text_styles.insert(egui::TextStyle::Small, egui::FontId::proportional(SMALL_SIZE));
@@ -212,11 +212,6 @@ pub fn apply(context: &egui::Context) {
     }
 }
 
-/// Activates a theme.
-pub fn show(context: &egui::Context, theme: Theme) {
-    context.set_theme(egui::Theme::from(theme));
-}
-
 #[cfg(test)]
 mod tests {
     use super::palette::ramp;
@@ -237,7 +232,7 @@ mod tests {
         context.begin_pass(egui::RawInput::default());
         apply(&context);
         for theme in [Theme::Dark, Theme::Light] {
-            show(&context, theme);
+            context.set_theme(egui::Theme::from(theme));
             assert_eq!(of_context(&context).panel, theme.palette().panel);
             assert_eq!(context.global_style().visuals.panel_fill, theme.palette().panel);
         }

@@ -99,11 +99,6 @@ impl PanelWidths {
         chosen.map_or(LEAST_PANEL, |(_, width)| *width)
     }
 
-    fn choose(&mut self, place: Place, width: f32) {
-        self.chosen.retain(|(of, _)| *of != place);
-        self.chosen.push((place, width));
-    }
-
     /// Stores the panel widths of splits that are new or were dragged.
     fn note_dragged(&mut self, splits: &[Beside], width: f32) {
         let is_first = self.shares.is_empty();
@@ -115,7 +110,9 @@ impl PanelWidths {
             let is_restored =
                 is_first && self.chosen.iter().any(|(place, _)| *place == split.place);
             if !is_as_set && !is_restored {
-                self.choose(split.place, (room * (1.0 - split.share)).max(split.least));
+                let width = (room * (1.0 - split.share)).max(split.least);
+                self.chosen.retain(|(of, _)| *of != split.place);
+                self.chosen.push((split.place, width));
             }
             room *= split.share;
         }

@@ -21,24 +21,36 @@ pub(super) enum ChartKind {
     Methods,
 }
 
-impl ChartKind {
-    /// All kinds of charts, in the order of their buttons.
-    pub const ALL: [Self; 13] = [
-        Self::Fitness,
-        Self::Spread,
-        Self::Species,
-        Self::Blocks,
-        Self::Bodies,
-        Self::Stairs,
-        Self::Ancestors,
-        Self::Torques,
-        Self::Parents,
-        Self::Front,
-        Self::Archive,
-        Self::Runs,
-        Self::Methods,
-    ];
+/// All kinds of charts, in the order of their buttons, with the label of the button and its tooltip.
+pub(super) const CHART_KINDS: [(ChartKind, &str, &str); 13] = [
+    (ChartKind::Fitness, "Fitness", "Best, mean and median fitness of each generation"),
+    (ChartKind::Spread, "Spread", "Distribution of the fitness in the latest generation"),
+    (ChartKind::Species, "Species", "Snakes in each species of networks (NEAT)"),
+    (ChartKind::Blocks, "Blocks", "Snakes with each number of blocks, where bodies evolve"),
+    (
+        ChartKind::Bodies,
+        "Bodies",
+        "Ancestry of the best body, a picture at every change of its structure",
+    ),
+    (
+        ChartKind::Stairs,
+        "Stairs",
+        "Tree of the stairs that evolve, and transfers of snakes between them (POET)",
+    ),
+    (ChartKind::Ancestors, "Ancestors", "Ancestors of the best snake"),
+    (
+        ChartKind::Torques,
+        "Torques",
+        "Joint torques of the snake on the stage and of its parent; of several, of the selected one",
+    ),
+    (ChartKind::Parents, "Parents", "Gene values of the parents of the next generation"),
+    (ChartKind::Front, "Effort", "Best trade-offs between distance and energy"),
+    (ChartKind::Archive, "Kinds", "Best snake for each kind of behaviour (MAP-Elites)"),
+    (ChartKind::Runs, "Runs", "Compare this run with other runs"),
+    (ChartKind::Methods, "Compare methods", "Compare search methods over many runs"),
+];
 
+impl ChartKind {
     /// Returns whether runs of this strategy have data for a chart of this kind. `has_study` tells whether a study of
     /// methods is open.
     pub fn is_offered(self, strategy: StrategyKind, has_study: bool) -> bool {
@@ -57,31 +69,9 @@ impl ChartKind {
         }
     }
 
-    /// Returns the label of the button and its tooltip.
-    pub fn labels(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Fitness => ("Fitness", "Best, mean and median fitness of each generation"),
-            Self::Spread => ("Spread", "Distribution of the fitness in the latest generation"),
-            Self::Species => ("Species", "Snakes in each species of networks (NEAT)"),
-            Self::Blocks => ("Blocks", "Snakes with each number of blocks, where bodies evolve"),
-            Self::Bodies => {
-                ("Bodies", "Ancestry of the best body, a picture at every change of its structure")
-            }
-            Self::Stairs => (
-                "Stairs",
-                "Tree of the stairs that evolve, and transfers of snakes between them (POET)",
-            ),
-            Self::Ancestors => ("Ancestors", "Ancestors of the best snake"),
-            Self::Torques => (
-                "Torques",
-                "Joint torques of the snake on the stage and of its parent; of several, of the selected one",
-            ),
-            Self::Parents => ("Parents", "Gene values of the parents of the next generation"),
-            Self::Front => ("Effort", "Best trade-offs between distance and energy"),
-            Self::Archive => ("Kinds", "Best snake for each kind of behaviour (MAP-Elites)"),
-            Self::Runs => ("Runs", "Compare this run with other runs"),
-            Self::Methods => ("Compare methods", "Compare search methods over many runs"),
-        }
+    /// Returns the label of the button.
+    pub fn name(self) -> &'static str {
+        CHART_KINDS[self as usize].1
     }
 
     /// Returns the text that is shown while there is no data.

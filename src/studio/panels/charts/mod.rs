@@ -36,7 +36,7 @@ use crate::studio::ui::theme;
 use snakes_core::save::StudyRuns;
 
 use band_kinds::{BLOCKS, SPECIES};
-use chart_kind::ChartKind;
+use chart_kind::{CHART_KINDS, ChartKind};
 use learning_curves::CurvesPanel;
 use torques::TorqueComparison;
 use view::{ChartView, Version};
@@ -79,8 +79,8 @@ impl ChartsPanel {
         }
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
-            for kind in ChartKind::ALL.into_iter().filter(|kind| is_offered(*kind)) {
-                let (name, hint) = kind.labels();
+            let offered = CHART_KINDS.into_iter().filter(|(kind, ..)| is_offered(*kind));
+            for (kind, name, hint) in offered {
                 ui.selectable_value(&mut self.kind, kind, name).on_hover_text(hint);
             }
         });
@@ -123,10 +123,10 @@ impl ChartsPanel {
         match view {
             Ok(view) => {
                 header(ui, view, kind, commands);
-                draw::draw(ui, kind.labels().0, view, height, shown, commands);
+                draw::draw(ui, kind.name(), view, height, shown, commands);
             }
             Err(why) => {
-                title(ui, kind.labels().0);
+                title(ui, kind.name());
                 explain(ui, &why);
             }
         }
@@ -203,7 +203,7 @@ fn header(ui: &mut egui::Ui, view: &ChartView, kind: ChartKind, commands: &mut V
             ("CSV", "Save the numbers as a table", ChartFormat::Csv),
             ("PNG", "Save the chart as a picture of 1600 by 900 pixels", ChartFormat::Png),
         ] {
-            let (figure, name) = (Arc::clone(figure), kind.labels().0.to_lowercase());
+            let (figure, name) = (Arc::clone(figure), kind.name().to_lowercase());
             let export = ChartExport { figure, name, format, is_of_run: *is_of_run };
             let export = Command::Run(RunCommand::ExportChart(export));
             CommandButton::small(label, hint, export).unless(refusal).show(ui, commands);

@@ -72,7 +72,7 @@ fn a_chart_is_selected_by_its_name() {
             (ChartKind::Ancestors, "Ancestors of the best"),
             (ChartKind::Runs, "Comparison of runs"),
         ] {
-            click(harness, kind.labels().0);
+            click(harness, kind.name());
             assert!(harness.query_all_by_label(title).next().is_some(), "{title}");
         }
     });
@@ -82,7 +82,8 @@ fn a_chart_is_selected_by_its_name() {
 /// Returns the kinds of charts that a run has.
 fn offered(run: &CurrentRun) -> Vec<ChartKind> {
     let strategy = run.settings().evolution.strategy;
-    ChartKind::ALL.into_iter().filter(|kind| kind.is_offered(strategy, false)).collect()
+    let all = CHART_KINDS.map(|(kind, ..)| kind).into_iter();
+    all.filter(|kind| kind.is_offered(strategy, false)).collect()
 }
 
 #[test]
@@ -104,7 +105,7 @@ fn only_a_run_with_species_offers_their_chart() {
         (bodies_run(), ChartKind::Blocks, true),
     ] {
         with(&run, kind, 600.0, |harness| {
-            let name = kind.labels().0;
+            let name = kind.name();
             let title = format!("{name} by generation");
             for label in [name, &title] {
                 let mut found = harness.query_all_by_label(label);
@@ -152,7 +153,7 @@ fn every_chart_of_a_run_is_drawn_at_any_width_and_can_be_exported() {
             else {
                 panic!("{kind:?}: {sent:?}")
             };
-            assert_eq!((name, *format), (&kind.labels().0.to_lowercase(), ChartFormat::Csv));
+            assert_eq!((name, *format), (&kind.name().to_lowercase(), ChartFormat::Csv));
             assert!(figure.table().len() > 1, "{kind:?} has rows");
         }
     }
@@ -283,7 +284,8 @@ fn in_a_narrow_panel_axes_have_titles_with_units_and_a_legend_says_what_a_click_
 fn an_individual_in_a_lane_has_the_dot_of_that_lane() {
     let run = explored_run();
     let origin = run.reports()[1].champion.as_ref().expect("a healthy snake").origin.clone();
-    let champion = ShownChampion::Found { generation: 2, individual: origin.individual };
+    let place = IndividualId { generation: 2, individual: origin.individual };
+    let champion = ShownChampion::Found(place);
     let view = view_of(ChartKind::Fitness, &run).expect("explored");
     for lane in [Some(3), None] {
         let shown = [ShownLane { champion, lane }];

@@ -57,7 +57,7 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
     if let Some(reason) = item.problem() {
         return problem(ui, reason);
     }
-    if !item.is_read() {
+    if item.read.is_none() {
         return explain(ui, "Loading…");
     }
     // Lines that are always shown, and those that a click unfolds.

@@ -32,7 +32,7 @@ impl LibraryPanel {
                 continue;
             }
             if key == Press::A {
-                let rows = self.order.rows();
+                let rows = self.order.rows.clone();
                 self.selection.all(rows.iter().map(|row| library.items[*row].place()));
                 continue;
             }
@@ -54,12 +54,13 @@ impl LibraryPanel {
 
     /// Moves the cursor by a key. With Shift, extends the selected range.
     fn move_cursor(&mut self, key: Press, held: Modifiers, library: &Library) {
-        let rows = self.order.rows();
+        let rows = self.order.rows.clone();
         let Some(last) = rows.len().checked_sub(1) else { return };
         let place_of = |row: usize| library.items[rows[row]].place();
         let now = self
             .selection
-            .cursor()
+            .cursor
+            .as_ref()
             .and_then(|cursor| (0..rows.len()).find(|row| place_of(*row) == cursor));
         let next = match (key, now) {
             (Press::Home, _) => 0,

@@ -33,7 +33,7 @@ use snakes_core::save::library::{EXPORTS, SavePlace};
 use actions::{LibraryAction, LibraryActionKind, actions};
 use fields::{NotesField, PathPrompt, RenameField};
 use order::{SortOrder, SortedItems};
-use row::{RowStyle, name_rect, row};
+use row::{name_rect, row};
 use selection::ChosenSaves;
 
 /// The library panel, with its state between frames.
@@ -97,12 +97,12 @@ impl LibraryPanel {
         if self.order.update(library, &self.search, self.sort, now_s) {
             // An action must never concern a save that the search hides.
             let shown: BTreeSet<&SavePlace> =
-                self.order.rows().iter().map(|row| library.items[*row].place()).collect();
+                self.order.rows.iter().map(|row| library.items[*row].place()).collect();
             self.selection.retain(|place| shown.contains(place));
         }
         // The details of a selected save leave a part of the panel to the rows of the list; they scroll instead.
         let rest = available - above - self.details_height;
-        let rows = (self.order.rows().len() as f32 + 0.5) * theme::LIBRARY_ROW_HEIGHT;
+        let rows = (self.order.rows.len() as f32 + 0.5) * theme::LIBRARY_ROW_HEIGHT;
         let least = rows.min(available * theme::LEAST_LIST_SHARE);
         self.list(ui, library, rest.max(least).floor());
         let details = egui::ScrollArea::vertical().id_salt("details").auto_shrink([false, true]);
@@ -156,7 +156,7 @@ impl LibraryPanel {
         }
         if library.export_requests != self.export_requests {
             self.export_requests = library.export_requests;
-            if self.selection.places().len() == 0 {
+            if self.selection.chosen.is_empty() {
                 let text = "Select what to export in the library first.".to_owned();
                 self.sent.push(Command::Notify(text));
             } else {
@@ -170,7 +170,7 @@ impl LibraryPanel {
         let size = egui::vec2(ui.available_width(), height);
         let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
         let list = ui.interact(rect, id, Sense::FOCUSABLE);
-        let cursor = self.selection.cursor().and_then(|place| library.item(place));
+        let cursor = self.selection.cursor.as_ref().and_then(|place| library.item(place));
         let now = cursor.map_or("nothing selected".to_owned(), LibraryItem::label);
         let list = named(list, WidgetType::Other, &format!("Saves: {now}"));
         let role = egui::accesskit::Role::ListBox;
@@ -194,7 +194,7 @@ impl LibraryPanel {
     }
 
     fn rows(&mut self, ui: &mut egui::Ui, library: &Library, has_keyboard: bool) {
-        let rows = self.order.rows();
+        let rows = self.order.rows.clone();
         if rows.is_empty() {
             let text = match (library.problem.as_deref(), library.is_listed, self.search.is_empty())
             {
@@ -216,7 +216,7 @@ impl LibraryPanel {
                 let top = row as f32 * theme::LIBRARY_ROW_HEIGHT - self.offset;
                 top < self.height && top + theme::LIBRARY_ROW_HEIGHT > 0.0
             };
-            let cursor = self.selection.cursor();
+            let cursor = self.selection.cursor.as_ref();
             let cursor = cursor.filter(|place| row_of(place).is_some_and(was_in_sight));
             self.scroll_to = self.scroll_to.take().or(cursor.cloned());
             self.height = view;
@@ -234,7 +234,7 @@ impl LibraryPanel {
                 let size = egui::vec2(ui.available_width(), theme::LIBRARY_ROW_HEIGHT);
                 let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
                 self.row(ui, rect, library, item, has_keyboard);
-                if !item.is_read() {
+                if item.read.is_none() {
                     visible.push(item.place().clone());
                 }
             }
@@ -255,18 +255,16 @@ impl LibraryPanel {
         has_keyboard: bool,
     ) {
         let place = item.place();
-        let style = RowStyle {
-            is_chosen: self.selection.has(place),
-            is_cursor: has_keyboard && self.selection.cursor() == Some(place),
-        };
-        let response = row(ui, rect, item, style);
+        let is_chosen = self.selection.chosen.contains(place);
+        let has_cursor = has_keyboard && self.selection.cursor.as_ref() == Some(place);
+        let response = row(ui, rect, item, is_chosen, has_cursor);
         if self.renaming.as_ref().is_some_and(|renaming| renaming.place == *place) {
             return self.edit_name(ui, name_rect(rect));
         }
         if response.clicked() {
             let held = ui.input(|input| input.modifiers);
             if held.shift {
-                let rows = self.order.rows();
+                let rows = self.order.rows.clone();
                 self.selection.extend(place, rows.iter().map(|row| library.items[*row].place()));
             } else if held.command {
                 self.selection.toggle(place);
@@ -275,7 +273,7 @@ impl LibraryPanel {
             }
             self.wants_keyboard = true;
         }
-        if response.secondary_clicked() && !style.is_chosen {
+        if response.secondary_clicked() && !is_chosen {
             self.selection.only(place);
         }
         if response.double_clicked() {
@@ -291,7 +289,7 @@ impl LibraryPanel {
 
     /// Returns the items of the selected saves.
     fn chosen<'a>(&self, library: &'a Library) -> Vec<&'a LibraryItem> {
-        self.selection.places().filter_map(|place| library.item(place)).collect()
+        self.selection.chosen.iter().filter_map(|place| library.item(place)).collect()
     }
 
     /// Recomputes the actions only after a change, because many saves may be selected.
@@ -311,7 +309,7 @@ impl LibraryPanel {
                 self.scroll_to = Some(place);
             }
             Some(LibraryActionKind::Export) => {
-                let places = self.selection.places().cloned().collect();
+                let places = self.selection.chosen.iter().cloned().collect();
                 self.sent.push(Command::File(FileCommand::Ask(FileQuestion::Export(places))));
             }
             Some(LibraryActionKind::ShowChampions(run)) => {
@@ -323,14 +321,14 @@ impl LibraryPanel {
 
     /// Draws the details of the selection and its actions.
     fn footer(&mut self, ui: &mut egui::Ui, library: &Library) {
-        let (shown, all) = (self.order.rows().len(), library.items.len());
+        let (shown, all) = (self.order.rows.len(), library.items.len());
         let found =
             if shown == all { format!("{all} saves") } else { format!("{shown} of {all} saves") };
         let reading = match library.unread {
             0 => String::new(),
             unread => format!(", {unread} not read yet"),
         };
-        let chosen = self.selection.places().len();
+        let chosen = self.selection.chosen.len();
         let several = if chosen > 1 { format!(", {chosen} selected") } else { String::new() };
         explain(ui, &format!("{found}{reading}{several}"));
         if let Some(reason) = self.renaming.as_ref().and_then(RenameField::problem) {
@@ -339,7 +337,7 @@ impl LibraryPanel {
         self.update_actions(library);
         let wanted = details::buttons(ui, &self.actions.1);
         self.path_field(ui);
-        let only = self.selection.places().next().filter(|_| chosen == 1);
+        let only = self.selection.chosen.iter().next().filter(|_| chosen == 1);
         let only = only.and_then(|place| library.item(place));
         self.keep_notes_of_others(only);
         if let Some(item) = only {

@@ -100,7 +100,7 @@ impl SortOrder {
 #[derive(Debug, Default)]
 pub struct SortedItems {
     /// Index of each row's item among the library's items.
-    rows: Arc<[usize]>,
+    pub rows: Arc<[usize]>,
     input: Option<SortInput>,
     sorted_at_s: f64,
 }
@@ -150,11 +150,6 @@ impl SortedItems {
         (self.input, self.sorted_at_s) = (Some(input_now), now_s);
         true
     }
-
-    /// Returns the index of each row's item among the library's items.
-    pub fn rows(&self) -> Arc<[usize]> {
-        Arc::clone(&self.rows)
-    }
 }
 
 #[cfg(test)]
@@ -173,7 +168,7 @@ mod tests {
     fn names(library: &Library, search: &str, sort: SortOrder) -> Vec<String> {
         let mut order = SortedItems::default();
         order.update(library, search, sort, 0.0);
-        order.rows().iter().map(|row| library.items[*row].name().to_owned()).collect()
+        order.rows.iter().map(|row| library.items[*row].name().to_owned()).collect()
     }
 
     #[test]

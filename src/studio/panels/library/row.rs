@@ -10,25 +10,22 @@ use crate::studio::state::library::LibraryItem;
 use crate::studio::ui::accessible::named_selected;
 use crate::studio::ui::theme;
 
-/// Highlighting of a row of the library.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct RowStyle {
-    /// Whether the row is selected.
-    pub is_chosen: bool,
-    /// Whether the keyboard cursor of the focused list is on the row.
-    pub is_cursor: bool,
-}
-
-/// Draws a row and returns its response.
-pub fn row(ui: &mut egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) -> Response {
+/// Draws a row and returns its response. The row may be selected, and may have the keyboard cursor of the focused list.
+pub fn row(
+    ui: &mut egui::Ui,
+    rect: Rect,
+    item: &LibraryItem,
+    is_chosen: bool,
+    has_cursor: bool,
+) -> Response {
     let id = ui.id().with(item.place().path()).with(item.name());
     // The list takes the focus as a whole, because it may have ten thousand rows.
     let response = ui.interact(rect, id, Sense::CLICK);
     let (kind, name) = (WidgetType::SelectableLabel, item.label());
-    let response = named_selected(response, kind, style.is_chosen, &name);
+    let response = named_selected(response, kind, is_chosen, &name);
     let palette = theme::of(ui);
     let ground = rect.shrink2(egui::vec2(0.0, 1.0));
-    let fill = match (style.is_chosen, response.hovered()) {
+    let fill = match (is_chosen, response.hovered()) {
         (true, _) => Some(palette.accent_soft),
         (false, true) => Some(palette.field_hovered),
         (false, false) => None,
@@ -36,7 +33,7 @@ pub fn row(ui: &mut egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) -
     if let Some(fill) = fill {
         ui.painter().rect_filled(ground, 4.0, fill);
     }
-    if style.is_cursor {
+    if has_cursor {
         let stroke = egui::Stroke::new(1.5, palette.accent);
         ui.painter().rect_stroke(ground, 4.0, stroke, egui::StrokeKind::Inside);
     }
@@ -52,9 +49,9 @@ pub fn row(ui: &mut egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) -
         }
     }
     if rect.width() >= theme::COLUMNS_WIDTH {
-        wide(ui, rect, item, style)
+        wide(ui, rect, item, is_chosen)
     } else {
-        narrow(ui, rect, item, style)
+        narrow(ui, rect, item, is_chosen)
     }
     match item.problem() {
         Some(problem) => response.on_hover_text(problem),
@@ -101,16 +98,16 @@ pub fn column(row: Rect, key: SortKey) -> Rect {
     }
 }
 
-fn narrow(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
+fn narrow(ui: &egui::Ui, rect: Rect, item: &LibraryItem, is_chosen: bool) {
     let text = text_rect(rect);
     let [above, below] = [text.with_max_y(text.center().y), text.with_min_y(text.center().y)];
-    let weak = weak(ui, style);
     let palette = theme::of(ui);
+    let [weak, problem] = text_colors(palette, is_chosen);
     let way = write(ui, above, Align::Max, &item.way_text(" of the way"), palette.text, false);
     let name = above.with_max_x(above.right() - way - theme::GAP);
     write(ui, name, Align::Min, item.name(), palette.text, false);
     if let Some(words) = item.problem_words() {
-        write(ui, below, Align::Min, words, problem_color(ui, style), true);
+        write(ui, below, Align::Min, words, problem, true);
         return;
     }
     let date = write(ui, below, Align::Max, &item.date_text(), weak, true);
@@ -119,13 +116,13 @@ fn narrow(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     write(ui, left, Align::Min, about.trim_matches([',', ' ']), weak, true);
 }
 
-fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
+fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, is_chosen: bool) {
     let palette = theme::of(ui);
-    let weak = weak(ui, style);
+    let [weak, problem] = text_colors(palette, is_chosen);
     write(ui, column(rect, SortKey::Name), Align::Min, item.name(), palette.text, false);
     if let Some(words) = item.problem_words() {
         let rest = column(rect, SortKey::Way).union(column(rect, SortKey::Generation));
-        write(ui, rest, Align::Min, words, problem_color(ui, style), false);
+        write(ui, rest, Align::Min, words, problem, false);
     }
     for (key, text, color) in [
         (SortKey::Way, item.way_text(""), palette.text),
@@ -137,15 +134,9 @@ fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, style: RowStyle) {
     }
 }
 
-/// Returns the colour of secondary text. On a selected row it is the normal text colour, for contrast.
-fn weak(ui: &egui::Ui, style: RowStyle) -> egui::Color32 {
-    let palette = theme::of(ui);
-    if style.is_chosen { palette.text } else { palette.text_weak }
-}
-
-fn problem_color(ui: &egui::Ui, style: RowStyle) -> egui::Color32 {
-    let palette = theme::of(ui);
-    if style.is_chosen { palette.text } else { palette.problem }
+/// Returns the colours of secondary text and of problems. On a selected row they are the normal text colour, for contrast.
+fn text_colors(palette: &theme::Palette, is_chosen: bool) -> [egui::Color32; 2] {
+    if is_chosen { [palette.text; 2] } else { [palette.text_weak, palette.problem] }
 }
 
 /// Draws one line of text, truncated to `rect`. Returns its width in points.

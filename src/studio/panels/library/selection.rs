@@ -7,9 +7,10 @@ use snakes_core::save::library::SavePlace;
 /// The selected saves, with cursor and anchor.
 #[derive(Debug, Default)]
 pub struct ChosenSaves {
-    chosen: BTreeSet<SavePlace>,
+    /// The selected saves.
+    pub chosen: BTreeSet<SavePlace>,
     /// Row from which keys move the cursor.
-    cursor: Option<SavePlace>,
+    pub cursor: Option<SavePlace>,
     /// Row at which a range of selected rows starts.
     anchor: Option<SavePlace>,
     /// Counter that every change of the selection increments.
@@ -17,27 +18,10 @@ pub struct ChosenSaves {
 }
 
 impl ChosenSaves {
-    /// Returns whether a save is selected.
-    pub fn has(&self, place: &SavePlace) -> bool {
-        self.chosen.contains(place)
-    }
-
-    /// Returns the selected saves.
-    pub fn places(&self) -> impl ExactSizeIterator<Item = &SavePlace> {
-        self.chosen.iter()
-    }
-
-    /// Returns the row from which keys move the cursor.
-    pub fn cursor(&self) -> Option<&SavePlace> {
-        self.cursor.as_ref()
-    }
-
     /// Selects one save only.
     pub fn only(&mut self, place: &SavePlace) {
-        self.changes += 1;
-        self.chosen = BTreeSet::from([place.clone()]);
-        self.anchor = Some(place.clone());
-        self.cursor = Some(place.clone());
+        self.chosen.clear();
+        self.toggle(place);
     }
 
     /// Adds a save to the selection, or removes it if it is selected.
@@ -84,7 +68,7 @@ mod tests {
     const NAMES: [&str; 5] = ["a", "b", "c", "d", "e"];
 
     fn chosen(selection: &ChosenSaves) -> String {
-        selection.places().map(SavePlace::name).collect()
+        selection.chosen.iter().map(SavePlace::name).collect()
     }
 
     #[test]
@@ -106,6 +90,6 @@ mod tests {
         selection.all(rows.iter());
         assert_eq!(chosen(&selection), "abcde");
         selection.retain(|place| *place != rows[1]);
-        assert_eq!((chosen(&selection), selection.cursor()), ("acde".to_owned(), None));
+        assert_eq!((chosen(&selection), selection.cursor), ("acde".to_owned(), None));
     }
 }

@@ -170,10 +170,9 @@ fn an_address_of_this_computer_is_explained() {
 
 #[test]
 fn workers_and_queues_are_listed_and_one_with_another_proof_is_marked() {
-    let run = own_run();
     let mut machines = Machines::default();
     machines.workers.extend([worker("desk-1", PROOF), worker("old-2", "fedcba9876543210")]);
-    machines.runs.insert("own-1".to_owned(), run);
+    machines.runs.insert("own-1".to_owned(), own_run());
     machines.queues.insert("own-1".to_owned(), RunQueue { batches: 3, results: 2 });
     machines.queues.insert("left-2".to_owned(), RunQueue { batches: 5, results: 0 });
     for width in [theme::PANEL_WIDTH, 900.0] {

@@ -12,19 +12,41 @@ use snakes_core::control::SenseKind;
 use snakes_core::score::Rollout;
 
 /// Senses of the snake as a whole.
-const OF_SNAKE: [SenseKind; 4] =
-    [SenseKind::Yaw, SenseKind::SpeedAhead, SenseKind::SpeedUp, SenseKind::Aside];
-/// Senses of a limb, grouped by organ.
-const OF_LIMB: [SenseKind; 8] = [
-    SenseKind::Gap,
-    SenseKind::StepUp,
-    SenseKind::Clearance,
-    SenseKind::Touch,
-    SenseKind::Load,
-    SenseKind::Blocked,
-    SenseKind::Pitch,
-    SenseKind::Roll,
+const OF_SNAKE: [ShownSense; 4] = [
+    (SenseKind::Yaw, "Direction of the head: 0 straight towards the stairs"),
+    (SenseKind::SpeedAhead, "Speed of the middle limb towards the stairs"),
+    (SenseKind::SpeedUp, "Speed of the middle limb upwards"),
+    (
+        SenseKind::Aside,
+        "Distance of the middle limb from the middle of the stairs: 1 at their edge",
+    ),
 ];
+/// Senses of a limb, grouped by organ.
+const OF_LIMB: [ShownSense; 8] = [
+    (
+        SenseKind::Gap,
+        "Way from the limb's front face to the next riser; full without a riser ahead",
+    ),
+    (
+        SenseKind::StepUp,
+        "Height of the next tread over the limb's lowest corner; 0 without a riser ahead",
+    ),
+    (SenseKind::Clearance, "Height of the limb's lowest corner over the surface below it"),
+    (SenseKind::Touch, "Whether the limb touches ground or stairs"),
+    (SenseKind::Load, "Force of the contacts upwards; the bar is half full at a limb's weight"),
+    (
+        SenseKind::Blocked,
+        "Force of the contacts against the direction in which the limb points; the bar is half full at a limb's \
+         weight",
+    ),
+    (SenseKind::Pitch, "Slope of the limb: positive with its front end up"),
+    (SenseKind::Roll, "Turn of the limb about its length"),
+];
+/// Sense of a joint.
+const OF_JOINT: ShownSense = (SenseKind::Bend, "Angle of the joint's bend");
+
+/// A sense and its explanation.
+type ShownSense = (SenseKind, &'static str);
 
 /// Draws the readings of the senses of the snake, of a limb, and of all joints.
 pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) {
@@ -42,20 +64,26 @@ pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) 
         0 => theme::flat(palette.red_limb),
         _ => theme::flat(palette.blue_limb),
     };
-    OF_LIMB.into_iter().for_each(|kind| row(ui, rollout, kind, view.limb, limb_color));
+    OF_LIMB.into_iter().for_each(|sense| row(ui, rollout, sense, view.limb, limb_color));
     if !view.is_selected {
         ui.label(weak(ui, "Click a limb on the stage to read its senses.").small());
     }
     title(ui, "Whole snake");
-    OF_SNAKE.into_iter().for_each(|kind| row(ui, rollout, kind, 0, palette.accent));
+    OF_SNAKE.into_iter().for_each(|sense| row(ui, rollout, sense, 0, palette.accent));
     title(ui, "Joints");
     for joint in 0..senses.joints.len() {
-        row(ui, rollout, SenseKind::Bend, joint, palette.bend);
+        row(ui, rollout, OF_JOINT, joint, palette.bend);
     }
 }
 
 /// Draws the row of a sense, for the part with this index.
-fn row(ui: &mut egui::Ui, rollout: &Rollout, kind: SenseKind, part: usize, color: Color32) {
+fn row(
+    ui: &mut egui::Ui,
+    rollout: &Rollout,
+    (kind, hint): ShownSense,
+    part: usize,
+    color: Color32,
+) {
     let info = kind.info();
     let senses = rollout.perception();
     let sensed = senses.value(kind, part);
@@ -64,7 +92,7 @@ fn row(ui: &mut egui::Ui, rollout: &Rollout, kind: SenseKind, part: usize, color
         (SenseKind::Pitch | SenseKind::Roll | SenseKind::Yaw, sine, _) => {
             (libm::asinf(sine.clamp(-1.0, 1.0)).to_degrees(), [-90.0, 90.0])
         }
-        (SenseKind::Bend | SenseKind::Twist, angle_rad, range_rad) => {
+        (SenseKind::Bend, angle_rad, range_rad) => {
             (angle_rad.to_degrees(), range_rad.map(f32::to_degrees))
         }
         (_, value, range) => (value, range),
@@ -78,11 +106,9 @@ fn row(ui: &mut egui::Ui, rollout: &Rollout, kind: SenseKind, part: usize, color
             let note = format!("½ at {weight_n:.0} N");
             (format!("{} N", decimals(force_n, 0)), note)
         }
-        SenseKind::Pitch
-        | SenseKind::Roll
-        | SenseKind::Yaw
-        | SenseKind::Bend
-        | SenseKind::Twist => (format!("{}°", decimals(value, 0)), format!("±{most:.0}°")),
+        SenseKind::Pitch | SenseKind::Roll | SenseKind::Yaw | SenseKind::Bend => {
+            (format!("{}°", decimals(value, 0)), format!("±{most:.0}°"))
+        }
         SenseKind::Gap => {
             let least_gap = if sensed >= 1.0 { "≥ " } else { "" };
             (format!("{least_gap}{} m", decimals(value, 2)), format!("0 to {most:.0} m"))
@@ -107,7 +133,7 @@ fn row(ui: &mut egui::Ui, rollout: &Rollout, kind: SenseKind, part: usize, color
         note: if is_frozen { "frozen" } else { &note },
         color,
         is_frozen,
-        hint: format!("{}. The controller receives {}", hint(kind), decimals(sensed, 2)),
+        hint: format!("{hint}. The controller receives {}", decimals(sensed, 2)),
         ..ValueBar::of_sense()
     };
     row.ui(ui);
@@ -116,35 +142,4 @@ fn row(ui: &mut egui::Ui, rollout: &Rollout, kind: SenseKind, part: usize, color
 fn capitalized(name: &str) -> String {
     let mut letters = name.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// Returns an explanation of a sense.
-fn hint(kind: SenseKind) -> &'static str {
-    match kind {
-        SenseKind::Bend => "Angle of the joint's bend",
-        SenseKind::Twist => "Angle of the joint's twist",
-        SenseKind::BendRate => "Rate of the joint's bend",
-        SenseKind::TwistRate => "Rate of the joint's twist",
-        SenseKind::Touch => "Whether the limb touches ground or stairs",
-        SenseKind::Load => "Force of the contacts upwards; the bar is half full at a limb's weight",
-        SenseKind::Blocked => {
-            "Force of the contacts against the direction in which the limb points; the bar is half full at a \
-             limb's weight"
-        }
-        SenseKind::Pitch => "Slope of the limb: positive with its front end up",
-        SenseKind::Roll => "Turn of the limb about its length",
-        SenseKind::Gap => {
-            "Way from the limb's front face to the next riser; full without a riser ahead"
-        }
-        SenseKind::StepUp => {
-            "Height of the next tread over the limb's lowest corner; 0 without a riser ahead"
-        }
-        SenseKind::Clearance => "Height of the limb's lowest corner over the surface below it",
-        SenseKind::Yaw => "Direction of the head: 0 straight towards the stairs",
-        SenseKind::SpeedAhead => "Speed of the middle limb towards the stairs",
-        SenseKind::SpeedUp => "Speed of the middle limb upwards",
-        SenseKind::Aside => {
-            "Distance of the middle limb from the middle of the stairs: 1 at their edge"
-        }
-    }
 }

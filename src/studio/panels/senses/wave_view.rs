@@ -10,6 +10,7 @@ use crate::studio::ui::text_rows::{explain, title};
 use crate::studio::ui::theme;
 use snakes_core::control::{ActiveWaveRule, WaveChoiceActivity};
 use snakes_core::genome::controllers::{JointGroup, Wave};
+use snakes_lab::plot::Role;
 
 /// Height of the row of joints, and of a wave's row, in points.
 const JOINTS_HEIGHT: f32 = theme::GAP * 4.5;
@@ -56,7 +57,7 @@ fn joints(ui: &mut egui::Ui, choice: &WaveChoiceActivity) {
             egui::pos2(left, area.top()),
             egui::vec2(width - 2.0, area.height()),
         );
-        let color = palette.category(wave);
+        let color = palette.role(Role::Species(wave as u32));
         let ink = theme::palette::text_on(color);
         ui.painter().rect_filled(cell, theme::GAP / 2.0, color);
         let (above, below) = if width >= WORD_WIDTH {
@@ -90,7 +91,7 @@ fn wave_row(ui: &mut egui::Ui, choice: &WaveChoiceActivity, index: usize, most: 
     let size = egui::vec2(ui.available_width(), WAVE_HEIGHT);
     let (area, response) = ui.allocate_exact_size(size, egui::Sense::hover());
     let followers = choice.of_joints.iter().filter(|of| **of == index).count();
-    let color = palette.category(index);
+    let color = palette.role(Role::Species(index as u32));
     let painter = ui.painter();
     let small = FontId::proportional(theme::SMALL_SIZE);
     let body = egui::TextStyle::Body.resolve(ui.style());

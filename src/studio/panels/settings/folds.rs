@@ -73,27 +73,19 @@ impl Sheet {
 mod tests {
     use super::*;
     use crate::studio::panels::settings::tests::click;
-    use crate::studio::panels::testing::shows;
+    use crate::studio::panels::testing::{Sent, panel, shows};
     use crate::studio::state::current_run::{CurrentRun, prepared_run};
-    use egui_kittest::Harness;
     use snakes_core::score::Trial;
 
-    type Panel<'a> = Harness<'a, (Sheet, Vec<Command>)>;
-
     /// Creates the section of the surface, with these sections unfolded.
-    fn surface<'a>(run: &'a CurrentRun, unfolded: &[&str]) -> Panel<'a> {
+    fn surface<'a>(run: &'a CurrentRun, unfolded: &[&str]) -> Sent<'a> {
         let mut sheet = Sheet::default();
         sheet.unfold(unfolded.iter().map(|title| (*title).to_owned()));
-        let mut panel = Harness::builder().with_size(egui::vec2(400.0, 900.0)).build_ui_state(
-            |ui, (sheet, commands): &mut (Sheet, Vec<Command>)| {
-                sheet.begin(ui, run);
-                sheet.section(ui, Trial::SURFACE);
-                sheet.send(commands);
-            },
-            (sheet, Vec::new()),
-        );
-        panel.run();
-        panel
+        panel([400.0, 900.0], move |ui, commands| {
+            sheet.begin(ui, run);
+            sheet.section(ui, Trial::SURFACE);
+            sheet.send(commands);
+        })
     }
 
     #[test]
@@ -109,7 +101,7 @@ mod tests {
         assert!(!shows(&panel, "Creep"));
         let command =
             |is_open| Command::Window(WindowCommand::Fold { section: "Surface", is_open });
-        assert_eq!(panel.state().1, [command(true), command(false)]);
+        assert_eq!(*panel.state(), [command(true), command(false)]);
     }
 
     #[test]

@@ -171,7 +171,7 @@ impl Sheet {
             SettingKind::Switch => self.on_off(ui, &shown),
             SettingKind::Absent(_) => None,
         };
-        self.sent.extend(new.map(|text| set(&listed.path, &text)));
+        self.sent.extend(new.map(|text| Command::Plan(PlanCommand::set(&listed.path, &text))));
     }
 
     /// Draws the sweep button beside a number of the world, and the reset button if the value differs from the preset.
@@ -218,18 +218,14 @@ impl Shown<'_> {
     pub fn name(&self, ui: &mut egui::Ui, width: f32) -> egui::Response {
         ui.set_max_width(width);
         if self.is_from_next_generation {
-            next_generation_mark(ui);
+            // A dot marks a setting that may change during the run.
+            let size = egui::Vec2::splat(theme::GAP);
+            let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+            ui.painter().circle_filled(rect.center(), theme::GAP * 0.375, theme::of(ui).accent);
+            response.on_hover_text("A change takes effect from the next generation");
         }
         ui.add(egui::Label::new(self.listed.setting.title()).wrap()).on_hover_text(&self.hint)
     }
-}
-
-/// Draws a dot that marks a setting that may change during the run.
-fn next_generation_mark(ui: &mut egui::Ui) {
-    let (rect, response) =
-        ui.allocate_exact_size(egui::Vec2::splat(theme::GAP), egui::Sense::hover());
-    ui.painter().circle_filled(rect.center(), theme::GAP * 0.375, theme::of(ui).accent);
-    response.on_hover_text("A change takes effect from the next generation");
 }
 
 /// Returns the text of a setting's tooltip: its effect, its range, and when a change takes effect.
@@ -247,11 +243,6 @@ fn hint(setting: &Setting, answer: Option<Result<(), &'static str>>) -> String {
         hint += &format!("\n{}.", when.trim_end_matches('.'));
     }
     hint
-}
-
-/// Returns the command that sets a setting to a new value.
-fn set(field: &str, text: &str) -> Command {
-    Command::Plan(PlanCommand::set(field, text))
 }
 
 #[cfg(test)]

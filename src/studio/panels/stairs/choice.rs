@@ -75,6 +75,7 @@ mod tests {
     use super::*;
     use crate::studio::panels::testing::{clicked, panel};
     use crate::studio::state::current_run::prepared_run;
+    use crate::studio::state::plan_commands::borrowed;
     use egui_kittest::kittest::Queryable;
 
     #[test]
@@ -84,9 +85,7 @@ mod tests {
         assert!(all.len() >= 9);
         for NamedStairs { name, stairs, .. } in &all {
             let changes = changes(run.next_settings(), stairs);
-            let changes: Vec<(&str, &str)> =
-                changes.iter().map(|(field, text)| (field.as_str(), text.as_str())).collect();
-            run.set_fields(&changes).expect(name);
+            run.set_fields(&borrowed(&changes)).expect(name);
             assert_eq!(run.next_settings().trial.stairs, *stairs, "{name}");
             assert_eq!(name_of(&run, stairs), Some(name.as_str()));
             assert_eq!(replacement(run.next_settings(), stairs), None);

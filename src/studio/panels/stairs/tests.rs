@@ -7,6 +7,7 @@ use super::*;
 use crate::studio::panels::settings::tests::click;
 use crate::studio::panels::testing::{press, shows};
 use crate::studio::state::current_run::prepared_run;
+use crate::studio::state::plan_commands::borrowed;
 use crate::studio::ui::theme;
 use snakes_core::genome::StairsClass;
 
@@ -29,7 +30,7 @@ fn editing(stairs: &Stairs, width: f32) -> Window {
         of.panel.ui(ui, &of.run, &UndoHistory::default(), None, &mut commands);
         for command in &commands {
             if let Command::Plan(PlanCommand::SetFields(changes)) = command {
-                set_fields(&mut of.run, changes);
+                of.run.set_fields(&borrowed(changes)).expect("allowed");
             }
         }
         of.commands.extend(commands);
@@ -47,14 +48,8 @@ fn set(run: &mut CurrentRun, stairs: &Stairs) {
     if let Some(Command::Plan(PlanCommand::SetFields(changes))) =
         replacement(run.next_settings(), stairs)
     {
-        set_fields(run, &changes);
+        run.set_fields(&borrowed(&changes)).expect("allowed");
     }
-}
-
-fn set_fields(run: &mut CurrentRun, changes: &[(String, String)]) {
-    let changes: Vec<(&str, &str)> =
-        changes.iter().map(|(field, text)| (field.as_str(), text.as_str())).collect();
-    run.set_fields(&changes).expect("allowed");
 }
 
 fn stairs(window: &Window) -> Stairs {

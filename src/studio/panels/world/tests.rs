@@ -179,9 +179,7 @@ fn columns_align_and_fit_at_every_panel_width() {
         ("trial.agent.bend_limit_rad", "1"),
         ("trial.agent.joint_damping_nms_per_rad", "12.5"),
     ];
-    for (field, text) in given {
-        run.set_field(field, text).expect("allowed");
-    }
+    run.set_fields(&given).expect("allowed");
     for width in [300.0, theme::PANEL_WIDTH, 459.0, 480.0, 600.0, 900.0] {
         sent_at(&run, width, &UndoHistory::default(), |harness| {
             for title in [ADVANCED, "Body", "Repeated trials", "Disqualification"] {

@@ -3,8 +3,7 @@
 use bevy::prelude::*;
 
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::pictures::render::middle_of;
-use crate::studio::scene::camera::view::CameraView;
+use crate::studio::scene::camera::view::{CameraView, middle_of};
 
 /// Time before and after a frame over which the camera's target is averaged, in seconds of the film.
 const TARGET_S: f32 = 0.8;
@@ -20,7 +19,8 @@ pub fn camera_path(
     (aspect, fps): (f32, u32),
 ) -> Vec<Transform> {
     let frames_in = |seconds: f32| libm::roundf(seconds * fps as f32) as usize;
-    let middles: Vec<Vec3> = points.iter().map(|points| middle_of(points)).collect();
+    let middle = |points: &Vec<Vec3>| middle_of(points.iter().copied());
+    let middles: Vec<Vec3> = points.iter().map(middle).collect();
     let targets = smooth(&middles, frames_in(TARGET_S));
     let view = CameraView::of(camera_mode, lanes);
     let needed_m: Vec<f32> = points
@@ -98,7 +98,7 @@ mod tests {
                 }
             }
             let single = camera_path(&points[7..8], camera_mode, 1, (aspect, 30));
-            let target = middle_of(&points[7]);
+            let target = middle_of(points[7].iter().copied());
             let mut view = CameraView::of(camera_mode, 1);
             view.distance_m = view.distance_to_see(target, points[7].iter().copied(), aspect);
             assert_eq!(single, [view.looking_at(target)]);

@@ -51,11 +51,10 @@ impl CameraView {
 
     /// Interpolates between this view, at share 0, and another one, at share 1.
     pub fn towards(&self, goal: &Self, share: f32) -> Self {
-        let mix = |from: f32, to: f32| from + (to - from) * share;
         Self {
-            yaw_rad: mix(self.yaw_rad, goal.yaw_rad),
-            pitch_rad: mix(self.pitch_rad, goal.pitch_rad),
-            distance_m: mix(self.distance_m, goal.distance_m),
+            yaw_rad: self.yaw_rad.lerp(goal.yaw_rad, share),
+            pitch_rad: self.pitch_rad.lerp(goal.pitch_rad, share),
+            distance_m: self.distance_m.lerp(goal.distance_m, share),
             offset: self.offset.lerp(goal.offset, share),
         }
     }
@@ -249,6 +248,13 @@ const SEARCH_STEPS: u32 = 6;
 pub(super) const VERTICAL_VIEW_RAD: f32 = std::f32::consts::FRAC_PI_4;
 /// Ratio of the picture's size to that of its content.
 const MARGIN: f32 = 1.12;
+
+/// Returns the centre of the box around points.
+pub(crate) fn middle_of(points: impl IntoIterator<Item = Vec3>) -> Vec3 {
+    let around = |(least, most): (Vec3, Vec3), point: Vec3| (least.min(point), most.max(point));
+    let (least, most) = points.into_iter().fold((Vec3::MAX, Vec3::MIN), around);
+    (least + most) / 2.0
+}
 
 #[cfg(test)]
 mod tests {

@@ -51,8 +51,8 @@ pub(crate) enum Shows {
 pub(crate) struct Side {
     /// Label of the lane or run.
     pub name: &'static str,
-    /// Names of changed settings, with their values as text.
-    pub changes: &'static [(&'static str, &'static str)],
+    /// Changed settings of the lane or run.
+    pub changes: Changes,
     /// Change of the champion's body, with the index of the block at which it is made. The gait is not changed.
     pub body_change: Option<(BodyChange, usize)>,
     /// Seed of the run.
@@ -61,10 +61,10 @@ pub(crate) struct Side {
     pub threads: usize,
 }
 
-pub(super) const fn lane(
-    name: &'static str,
-    changes: &'static [(&'static str, &'static str)],
-) -> Side {
+/// Names of changed settings, with their values as text.
+type Changes = &'static [(&'static str, &'static str)];
+
+pub(super) const fn lane(name: &'static str, changes: Changes) -> Side {
     Side { name, changes, body_change: None, seed: 1, threads: 1 }
 }
 
@@ -74,11 +74,7 @@ pub(super) const fn lane_of_body(name: &'static str, change: BodyChange, block: 
 }
 
 /// Creates a run that computes one snake at a time.
-pub(super) const fn run(
-    name: &'static str,
-    seed: u64,
-    changes: &'static [(&'static str, &'static str)],
-) -> Side {
+pub(super) const fn run(name: &'static str, seed: u64, changes: Changes) -> Side {
     Side { seed, ..lane(name, changes) }
 }
 

@@ -9,7 +9,7 @@ use snakes_core::score::Evaluation;
 #[derive(Debug, Default)]
 pub(crate) struct Plays {
     /// Finished playbacks in their order, at most one per speed.
-    finished: Vec<Play>,
+    pub finished: Vec<Play>,
     current: CurrentPlay,
     /// Displayed time when the playback was last observed, in simulated seconds.
     time_s: f64,
@@ -40,11 +40,6 @@ enum CurrentPlay {
 pub(super) const PLAYS_TO_COMPARE: usize = 2;
 
 impl Plays {
-    /// Returns the finished playbacks in their order.
-    pub fn finished(&self) -> &[Play] {
-        &self.finished
-    }
-
     /// Returns whether all playbacks ended with the same bits; `None` if there are too few to compare.
     pub fn are_equal(&self) -> Option<bool> {
         let (first, others) = self.finished.split_first()?;
@@ -99,7 +94,7 @@ mod tests {
     use super::*;
 
     fn speeds(plays: &Plays) -> Vec<f32> {
-        plays.finished().iter().map(|play| play.speed).collect()
+        plays.finished.iter().map(|play| play.speed).collect()
     }
 
     #[test]

@@ -129,7 +129,7 @@ impl Progress {
                 Some(truth)
             }
             Asks::PlaybackSpeed => {
-                let speeds = self.plays.finished().iter().map(|play| format!("× {}", play.speed));
+                let speeds = self.plays.finished.iter().map(|play| format!("× {}", play.speed));
                 let speeds = speeds.collect::<Vec<_>>().join(" and ");
                 Some(if self.plays.are_equal()? {
                     let words = format!("end position and hash are the same at {speeds}");

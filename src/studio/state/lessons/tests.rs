@@ -150,8 +150,7 @@ fn the_conclusion_about_the_frame_rate_is_true() {
 
 #[test]
 fn the_conclusion_about_limits_is_true() {
-    let found = &result(5, 1).runs;
-    let [with, without] = &found[..] else { panic!("two runs") };
+    let [with, without] = &result(5, 1).runs[..] else { panic!("two runs") };
     let last = |of: &Found| of.reports.last().and_then(|report| report.statistics);
     let [most, least] = [with, without].map(|of| last(of).expect("a healthy snake").best);
     assert!(most > least + 3.0, "{most} and {least}");
@@ -164,8 +163,7 @@ fn the_conclusion_about_limits_is_true() {
 
 #[test]
 fn the_conclusion_about_halving_is_true() {
-    let found = &result(1, 1).runs;
-    let [halved, kept] = &found[..] else { panic!("two runs") };
+    let [halved, kept] = &result(1, 1).runs[..] else { panic!("two runs") };
     let [halved, kept] = [halved, kept].map(|of| best(of).evaluation.fitness);
     assert!(kept > halved + 3.0, "{kept} and {halved}");
     assert_eq!(answer(1, 1), "range stays large");
@@ -232,10 +230,9 @@ fn every_scene_of_every_lesson_can_be_shown() {
                     champions(champion, scene.sides).expect(lesson.title);
                 }
                 Shows::RunsOf(preset) => {
-                    scene
-                        .sides
-                        .iter()
-                        .for_each(|side| drop(plan(preset, side).expect(lesson.title)));
+                    for side in scene.sides {
+                        plan(preset, side).expect(lesson.title);
+                    }
                 }
             }
         }

@@ -126,7 +126,7 @@ fn expected(index: usize) -> String {
         };
         let results: Vec<String> = match question.asks {
             Asks::Furthest => progress.lanes.iter().map(lane).collect(),
-            Asks::PlaybackSpeed => progress.plays.finished().iter().map(play).collect(),
+            Asks::PlaybackSpeed => progress.plays.finished.iter().map(play).collect(),
             Asks::BestRun => progress.runs.iter().map(run).collect(),
             Asks::LateBodyChanges => progress.runs.iter().map(changes).collect(),
             Asks::SameHash => progress.runs.iter().map(hash).collect(),

@@ -8,8 +8,8 @@ use super::examination::Examination;
 use super::load::{champion_of, generation_of};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{MAX_LANES, Show};
-use crate::studio::state::lineup::evenly_chosen;
+use crate::studio::stage::{MAX_LANES, Show, evenly};
+use crate::studio::state::lineup::CHOSEN_GENERATIONS;
 use crate::studio::state::shares::shared;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
@@ -47,8 +47,8 @@ impl Library {
                 return self.load(true, move || generation_of(&run, generation).map(Show::solo));
             }
             LibraryCommand::RaceGenerations { run, generations } => {
-                let chosen = evenly_chosen(generations.len()).map(|index| generations[index]);
-                let champions = chosen.map(|generation| generation_of(run, generation));
+                let chosen = evenly(generations.len(), MAX_LANES, CHOSEN_GENERATIONS);
+                let champions = chosen.map(|index| generation_of(run, generations[index]));
                 return Ok(Some(Show::race(champions.collect::<Result<_, _>>()?)));
             }
             LibraryCommand::Rename { place, name } => {

@@ -20,7 +20,7 @@ pub struct LibraryItem {
     /// Name of the entry without the addition that tells it apart from others of the same name.
     plain_name: String,
     /// Contents of the entry or the error of reading it; `None` until it is read.
-    read: Option<Result<EntryDetails, EntryProblem>>,
+    pub read: Option<Result<EntryDetails, EntryProblem>>,
     /// Name of the entry in lower case, which is its sort key.
     pub sorted_as: String,
     /// Words of the entry in lower case, which the search compares.
@@ -126,11 +126,6 @@ impl LibraryItem {
     /// Returns whether the words of the entry contain all of these lower-case words.
     pub fn has_all(&self, sought: &[&str]) -> bool {
         sought.iter().all(|sought| self.words.contains(sought))
-    }
-
-    /// Returns whether the entry has been read.
-    pub fn is_read(&self) -> bool {
-        self.read.is_some()
     }
 
     /// Returns the error of reading the entry, if any.
@@ -241,7 +236,7 @@ impl LibraryItem {
         if let Some((words, problem)) = self.problem_words().zip(self.problem()) {
             return format!("{}, {words}: {problem}", self.name);
         }
-        if !self.is_read() {
+        if self.read.is_none() {
             return format!("{}, not read yet", self.name);
         }
         let kind = if self.place().run().is_some() { "run" } else { "" };

@@ -54,8 +54,9 @@ pub struct Palette {
     pub torque_plus: Color32,
     /// Colour of torques in the negative direction, in the scene.
     pub torque_minus: Color32,
-    /// Colours of the lanes, in their order. Colour-blind viewers can tell them apart. See [`Palette::lane_color`].
-    lanes: [Color32; 10],
+    /// Colours of the lanes, in their order: two hexadecimal digits each of red, green and blue. Colour-blind viewers can
+    /// tell them apart. See [`Palette::lane_color`].
+    lanes: [u32; 10],
     /// Colour of the trail.
     pub trail: Color,
     /// Colour of the spring by which the mouse pulls a limb.
@@ -146,16 +147,8 @@ pub const LIGHT: Palette = Palette {
     torque_plus: Color32::from_rgb(0xe0, 0x7b, 0x00),
     torque_minus: Color32::from_rgb(0x00, 0x7d, 0xd6),
     lanes: [
-        Color32::from_rgb(0xd1, 0x78, 0x1b),
-        Color32::from_rgb(0x10, 0x94, 0xe3),
-        Color32::from_rgb(0x31, 0x1a, 0x56),
-        Color32::from_rgb(0x43, 0x4b, 0xe3),
-        Color32::from_rgb(0xe6, 0x4e, 0x96),
-        Color32::from_rgb(0x66, 0x6c, 0x37),
-        Color32::from_rgb(0x65, 0x20, 0x19),
-        Color32::from_rgb(0x1f, 0x50, 0x73),
-        Color32::from_rgb(0x0e, 0x0d, 0xad),
-        Color32::from_rgb(0xd8, 0x0f, 0x00),
+        0xd1781b, 0x1094e3, 0x311a56, 0x434be3, 0xe64e96, 0x666c37, 0x652019, 0x1f5073, 0x0e0dad,
+        0xd80f00,
     ],
     trail: Color::srgb(0.55, 0.20, 0.65),
     pull: Color::srgb(0.80, 0.30, 0.05),
@@ -214,16 +207,8 @@ pub const DARK: Palette = Palette {
     torque_plus: Color32::from_rgb(0xff, 0xb0, 0x3b),
     torque_minus: Color32::from_rgb(0x62, 0xc0, 0xff),
     lanes: [
-        Color32::from_rgb(0xca, 0xa4, 0x19),
-        Color32::from_rgb(0x95, 0xc6, 0xff),
-        Color32::from_rgb(0xff, 0xff, 0xff),
-        Color32::from_rgb(0x50, 0x5a, 0xea),
-        Color32::from_rgb(0xfa, 0xca, 0xa7),
-        Color32::from_rgb(0x1d, 0xae, 0xa5),
-        Color32::from_rgb(0x8c, 0x5a, 0x91),
-        Color32::from_rgb(0x80, 0x92, 0xff),
-        Color32::from_rgb(0xff, 0xff, 0x45),
-        Color32::from_rgb(0xd0, 0x47, 0x1d),
+        0xcaa419, 0x95c6ff, 0xffffff, 0x505aea, 0xfacaa7, 0x1daea5, 0x8c5a91, 0x8092ff, 0xffff45,
+        0xd0471d,
     ],
     trail: Color::srgb(0.88, 0.62, 0.98),
     pull: Color::srgb(1.0, 0.72, 0.35),
@@ -312,16 +297,11 @@ impl Palette {
         }
     }
 
-    /// Returns the colour of an item in a list without a meaningful order, such as a wave of a library. After ten items
-    /// the colours repeat.
-    pub fn category(&self, number: usize) -> Color32 {
-        self.role(Role::Species(number as u32))
-    }
-
     /// Returns the colour of a lane, used on the snake's collar, beside its lane, in lists and in charts. The first
     /// lane is 0; after ten lanes the colours repeat.
     pub fn lane_color(&self, number: usize) -> Color32 {
-        self.lanes[number % self.lanes.len()]
+        let [_, red, green, blue] = self.lanes[number % self.lanes.len()].to_be_bytes();
+        Color32::from_rgb(red, green, blue)
     }
 
     /// Shifts a colour towards the text colour until it is readable on the panel.
