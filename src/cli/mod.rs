@@ -132,6 +132,7 @@ fn open_studio(args: &Args, files: &[PathBuf]) -> Result<(), CliError> {
     let options = studio::Options {
         run: if names_run { run } else { run.with_unused_seed(&saves) },
         offers_stopped_run: !names_run,
+        names_preset: args.run.settings.preset.is_some(),
         evaluator: args.studio_evaluator()?,
         saves,
         champions,

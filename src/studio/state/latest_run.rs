@@ -38,7 +38,7 @@ fn open(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, mut is_done: 
     let own = run.next_plan();
     let is_plain = run.context.presets.settings_of(&own.preset) == Some(&own.settings);
     // Without flags for settings, the user wants none in particular.
-    let is_any_wanted = is_plain && own.preset == DEFAULT_PRESET;
+    let is_any_wanted = is_plain && own.preset == DEFAULT_PRESET && !run.context.names_preset;
     let is_wanted = |of: &RunPlan| {
         let is_alike = of.preset == own.preset && (is_plain || of.settings == own.settings);
         is_any_wanted || is_alike
@@ -78,13 +78,15 @@ mod tests {
     fn started(
         generations: u32,
         own: impl Fn(&SavesFolder) -> RunSource,
+        names_preset: bool,
         is_ready: impl Fn(&World) -> bool,
     ) -> (TempDir, App) {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         evolve(small_run(&saves, 1, generations), 1);
         let run = own(&saves);
-        let options = Options { offers_stopped_run: true, ..Options::of_test(run, saves) };
+        let options =
+            Options { offers_stopped_run: true, names_preset, ..Options::of_test(run, saves) };
         let mut app = App::new();
         app.insert_resource(CurrentRun::new(&options))
             .init_resource::<Notices>()
@@ -97,32 +99,42 @@ mod tests {
         (folder, app)
     }
 
+    /// Returns a run of the default preset with the seed 1.
+    fn default_run(saves: &SavesFolder) -> RunSource {
+        let settings = load_preset(DEFAULT_PRESET).expect("shipped").settings;
+        RunSource::in_saves(saves, RunPlan::new(DEFAULT_PRESET, 1, settings), ExistingRun::Keep)
+    }
+
     #[test]
     fn a_run_with_other_settings_is_offered_by_name_and_place() {
-        for (generations, ending, label) in [
-            (10_000, " m: stopped after generation 1 of 10000.", "Continue"),
-            (1, ": finished after generation 1.", "Show it"),
+        // The own runs are too long to finish during the test, which would cause a message.
+        let small = |saves: &SavesFolder| small_run(saves, 2, 9_000);
+        let named: fn(&SavesFolder) -> RunSource = default_run;
+        for (generations, own, names_preset, ending, label) in [
+            (
+                10_000,
+                small as fn(&SavesFolder) -> RunSource,
+                false,
+                " m: stopped after generation 1 of 10000.",
+                "Continue",
+            ),
+            (1, small, false, ": finished after generation 1.", "Show it"),
+            (1, named, true, ": finished after generation 1.", "Show it"),
         ] {
-            // The run is too long to finish during the test, which would cause a message.
-            let own = |saves: &SavesFolder| small_run(saves, 2, 9_000);
             let is_told = |world: &World| world.resource::<Notices>().len() > 0;
-            let (_folder, app) = started(generations, own, is_told);
+            let (_folder, app) = started(generations, own, names_preset, is_told);
             let notices = app.world().resource::<Notices>();
             let said = notices.last().unwrap_or_default();
             assert!(said.starts_with("test 1, ") && said.ends_with(ending), "{said}");
             assert_eq!((notices.len(), notices.last_offers()[0].0.as_str()), (1, label));
             let run = app.world().resource::<CurrentRun>();
-            assert_eq!((run.plan_now.seed, run.status()), (2, RunStatus::Running));
+            let seed = if names_preset { 1 } else { 2 };
+            assert_eq!((run.plan_now.seed, run.status()), (seed, RunStatus::Running));
         }
     }
 
     #[test]
     fn a15_the_latest_run_is_opened_stopped_or_finished_and_can_continue_or_make_place() {
-        let default = |saves: &SavesFolder| {
-            let preset = load_preset(DEFAULT_PRESET).expect("shipped");
-            let plan = RunPlan::new(DEFAULT_PRESET, 1, preset.settings);
-            RunSource::in_saves(saves, plan, ExistingRun::Keep)
-        };
         for (generations, status, go_on) in [
             (10_000, RunStatus::Paused, RunCommand::Start),
             (1, RunStatus::Finished, RunCommand::Extend),
@@ -133,9 +145,10 @@ mod tests {
                 (run.reports().len(), run.status()) == (1, status)
             };
             for (is_default, command, seed) in [(false, go_on, 1), (true, RunCommand::New, 2)] {
-                let own =
-                    |saves: &SavesFolder| if is_default { default(saves) } else { alike(saves) };
-                let (_folder, mut app) = started(generations, own, is_open);
+                let own = |saves: &SavesFolder| {
+                    if is_default { default_run(saves) } else { alike(saves) }
+                };
+                let (_folder, mut app) = started(generations, own, false, is_open);
                 let said = app.world().resource::<Notices>().last().unwrap_or_default();
                 let is_told = said.starts_with("test 1, ") && said.contains(" is finished: ");
                 assert_eq!(is_told, status == RunStatus::Finished, "{said}");

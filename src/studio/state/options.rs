@@ -18,6 +18,8 @@ pub struct Options {
     pub run: RunSource,
     /// Whether to open the latest run, stopped or finished, or to offer it. This is not done if the user named a run.
     pub offers_stopped_run: bool,
+    /// Whether the user named the preset, even if it is the default one.
+    pub names_preset: bool,
     /// Evaluator of the genomes of runs.
     pub evaluator: Arc<dyn Evaluator>,
     /// Folder in which the next runs are saved.
@@ -49,6 +51,7 @@ impl Options {
         Self {
             run,
             offers_stopped_run: false,
+            names_preset: false,
             evaluator: Arc::new(LocalPool::new(1).expect("threads")),
             saves,
             champions: Vec::new(),
