@@ -49,7 +49,7 @@ fn after_landing(ui: &mut egui::Ui, run: ChampionSource, commands: &mut Vec<Comm
         return;
     }
     ui.separator();
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(title_text("The best snake reaches the top. Try next:"));
         if ui.small_button("Close").clicked() {
             ui.data_mut(|data| data.insert_temp(id, run));
