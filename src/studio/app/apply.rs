@@ -3,6 +3,8 @@
 mod excursions;
 pub mod stage;
 
+use std::collections::VecDeque;
+
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
 
@@ -39,17 +41,26 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_message::<Command>().add_systems(Update, apply.in_set(FrameSet::Apply));
 }
 
-/// Executes the commands in the order in which they were sent.
-pub(super) fn apply(mut commands: MessageReader<Command>, mut studio: StudioParams) {
-    for command in commands.read() {
+/// Executes the commands in the order in which they were sent. After a command that changes what is on the stage, the others wait for the
+/// next frame, because lanes come and go only between two systems.
+pub(super) fn apply(
+    mut commands: MessageReader<Command>,
+    mut waiting: Local<VecDeque<Command>>,
+    mut studio: StudioParams,
+) {
+    waiting.extend(commands.read().cloned());
+    while let Some(command) = &waiting.pop_front() {
         let before = studio.run.next_plan().clone();
         let left = studio.stage.scene(command, &studio.view.rig);
         let frames = studio.frames();
         let done = studio.execute(command);
         let frames = (frames, studio.frames());
-        studio.stage.finish(command, left, frames, &mut studio.view.rig);
+        let is_other = studio.stage.finish(command, left, frames, &mut studio.view.rig);
         studio.history.note(command, before, studio.run.next_plan());
         studio.notices.refusal(done.err());
+        if is_other {
+            break;
+        }
     }
 }
 

@@ -132,7 +132,8 @@ fn of_presenter(key: &Key, code: KeyCode) -> Option<Command> {
         Key::Character(text) if matches!(text.as_str(), "b" | "B" | ".") => black(),
         // egui knows no keys that only modify others, such as the keyboard's layout, or control the computer: sound, light.
         key if !matches!(key, Key::Character(_)) && bevy_to_egui_key(key).is_none() => None,
-        _ => Some(Command::Window(WindowCommand::TogglePresenting)),
+        // Several keys of one frame end it once.
+        _ => Some(Command::Window(WindowCommand::EndPresenting)),
     }
 }
 

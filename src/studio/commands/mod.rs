@@ -258,6 +258,8 @@ pub(super) enum WindowCommand {
     TogglePanels,
     /// Fill the screen with the stage and a large caption, or return to the window.
     TogglePresenting,
+    /// Return from the presenting mode to the window.
+    EndPresenting,
     /// Make the presented screen black, or show the stage again.
     ToggleBlack,
     /// Select the next larger or smaller UI scale.

@@ -84,6 +84,9 @@ impl Workspace {
             WindowCommand::TogglePresenting => {
                 (self.is_presenting, self.is_black) = (!self.is_presenting, false);
             }
+            WindowCommand::EndPresenting => {
+                (self.is_presenting, self.is_black) = (false, false);
+            }
             WindowCommand::ToggleBlack => self.is_black = !self.is_black,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
             WindowCommand::Enlarge => self.scale.enlarge(),
@@ -102,7 +105,7 @@ impl Workspace {
             WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),
             WindowCommand::CloseModal if self.modal().is_some() => self.close_modal(),
             WindowCommand::CloseModal if self.is_presenting => {
-                (self.is_presenting, self.is_black) = (false, false);
+                return self.apply(&WindowCommand::EndPresenting);
             }
             WindowCommand::CloseModal => self.is_bare = false,
         }

@@ -89,14 +89,14 @@ impl StageParams<'_, '_> {
 
     /// Sends what a command shows to the stage, or brings back an earlier scene if the command ends an excursion. `left`
     /// is the scene before the command: see [`Self::scene`]. `before` and `after` tell which of [`FRAMES`] were open
-    /// before and after the command.
+    /// before and after the command. Returns whether the stage gets other lanes.
     pub(super) fn finish(
         &mut self,
         command: &Command,
         left: Option<LeftScene>,
         (before, after): ([bool; 2], [bool; 2]),
         camera: &mut CameraRig,
-    ) {
+    ) -> bool {
         let shown = self.pending.take();
         let mode = shown.as_ref().map(|show| &show.mode);
         let changed =
@@ -124,12 +124,15 @@ impl StageParams<'_, '_> {
             }
             Effect::Leave(excursion) => {
                 if let Some(scene) = self.way_back.leave(excursion) {
-                    return self.bring_back(scene, camera);
+                    self.bring_back(scene, camera);
+                    return true;
                 }
             }
             Effect::Settle => self.way_back.settle(),
             Effect::Forget => self.way_back.forget(),
         }
+        let is_other = shown.is_some();
         self.show.write_batch(shown);
+        is_other
     }
 }

@@ -107,7 +107,7 @@ fn a_clicker_leads_through_a_presentation_and_any_other_key_ends_it() {
         assert_eq!(of_presenter(&key, KeyCode::F24), expected, "{key:?}");
     }
     for key in [Key::Escape, Key::F11, Key::Tab, Key::F1, character("x"), character("n")] {
-        let leave = Command::Window(WindowCommand::TogglePresenting);
+        let leave = Command::Window(WindowCommand::EndPresenting);
         assert_eq!(of_presenter(&key, KeyCode::F24), Some(leave), "{key:?}");
     }
 }
