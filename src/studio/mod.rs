@@ -6,7 +6,7 @@
 //! advances the same [`snakes_core::score::Rollout`] that scores to the time of the shared clock. Evolution runs on its own
 //! threads ([`snakes_lab::run::BackgroundRun`]). Panels and keys send a [`commands::Command`]; one system applies them.
 //!
-//! [`FrameSet`] orders the systems within a frame.
+//! [`schedule::FrameSet`] orders the systems within a frame.
 
 mod app;
 mod commands;
@@ -32,7 +32,6 @@ use snakes_core::save::{PreferencesFile, shipped_champion};
 
 use app::preferences::StoredPreferences;
 use app::ui_dump::UiDumpFile;
-use schedule::FrameSet;
 use stage::opening::OpeningChampions;
 use state::current_run::CurrentRun;
 use state::following::Following;
@@ -101,11 +100,8 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         .insert_resource(Turns::new(has_champions))
         .insert_resource(OpenedComparison(options.comparison.clone()))
         .insert_resource(run)
-        .configure_sets(
-            Update,
-            (FrameSet::TakeIn, FrameSet::Apply, FrameSet::Advance, FrameSet::Draw).chain(),
-        )
         .add_plugins((
+            schedule::plugin,
             app::plugin,
             failure::gpu_loss::plugin,
             failure::panic_guard::plugin,

@@ -15,5 +15,11 @@ pub(crate) enum FrameSet {
     Draw,
 }
 
+/// Puts the sets of systems in their order.
+pub(super) fn plugin(app: &mut App) {
+    use FrameSet::{Advance, Apply, Draw, TakeIn};
+    app.configure_sets(Update, (TakeIn, Apply, Advance, Draw).chain());
+}
+
 /// Rate of `FixedUpdate`, in hertz. Results of evolution are processed at this rate, independently of the frame rate.
 pub(crate) const RESULTS_HZ: f64 = 20.0;

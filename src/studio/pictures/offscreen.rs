@@ -30,7 +30,7 @@ use crate::studio::failure::panic_guard;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::scene::quality::StageQuality;
 use crate::studio::scene::{self, camera};
-use crate::studio::schedule::FrameSet;
+use crate::studio::schedule;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::placed;
 use crate::studio::ui::theme::Theme;
@@ -109,11 +109,7 @@ impl Offscreen {
         let mut app = App::new();
         app.insert_resource(theme)
             .insert_resource(StageQuality::for_films())
-            .add_plugins(plugins)
-            .configure_sets(
-                Update,
-                (FrameSet::TakeIn, FrameSet::Apply, FrameSet::Advance, FrameSet::Draw).chain(),
-            )
+            .add_plugins((plugins, schedule::plugin))
             .init_resource::<FinishedPictures>()
             .add_plugins(scene::drawing);
         while app.plugins_state() == bevy::app::PluginsState::Adding {

@@ -54,7 +54,7 @@ pub(in crate::studio::app) fn app() -> App {
         .init_resource::<MachinesLink>()
         .init_resource::<UndoHistory>()
         .init_resource::<Theme>()
-        .add_systems(Update, apply);
+        .add_plugins((crate::studio::schedule::plugin, super::plugin));
     app
 }
 
@@ -192,7 +192,7 @@ fn pausing_in_the_frame_of_a_new_show_pauses_that_show() {
         Command::Player(PlayerCommand::Toggle),
     ];
     app.world_mut().write_message_batch(commands);
-    app.update();
+    (0..2).for_each(|_| app.update());
     assert_eq!(app.world().resource::<Messages<Show>>().len(), 1, "one show request");
     assert!(!app.world().resource::<Playback>().is_playing, "and paused");
 }
@@ -204,7 +204,7 @@ fn a_save_is_shown_and_a_missing_one_is_reported() {
     for place in [SavePlace::Shipped("fast"), gone] {
         app.world_mut().write_message(Command::Library(LibraryCommand::Replay(place)));
     }
-    app.update();
+    (0..2).for_each(|_| app.update());
     let shown: Vec<Show> = app.world_mut().resource_mut::<Messages<Show>>().drain().collect();
     assert_eq!(shown.len(), 1);
     assert_eq!(shown[0].champions[0].name(), "fast");

@@ -146,19 +146,20 @@ fn a1_every_excursion_within_every_other_returns_to_exactly_the_scene_before() {
 #[test]
 fn commands_of_one_frame_that_enter_and_leave_excursions_leave_no_lanes_behind() {
     let end = Command::Window(WindowCommand::EndPresenting);
-    for (kind, begin, leave) in excursions() {
+    // The snakes of a generation have no exam.
+    for (kind, begin, leave) in excursions().into_iter().filter(|(kind, ..)| *kind != "exam") {
         let leave = if kind == "presenting" { end.clone() } else { leave };
         let mut app = studio();
         send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
         settle(&mut app);
         let home = seen(&mut app);
         app.world_mut().resource_mut::<UndoHistory>().is_settled = true;
-        for command in [begin.clone(), leave.clone(), begin, leave.clone(), leave] {
+        for command in [begin.clone(), leave.clone(), begin, leave.clone()] {
             app.world_mut().write_message(command);
         }
         (0..12).for_each(|_| app.update());
         let other = differences(&seen(&mut app), &home);
-        assert!(other.is_empty(), "{kind}: {other:?}");
+        assert!(other.is_empty(), "{kind}, {leave:?}: {other:?}");
     }
 }
 
