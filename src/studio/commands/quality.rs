@@ -37,9 +37,4 @@ impl Quality {
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quality| quality.name() == name)
     }
-
-    /// Returns the next step. The last one is followed by the first.
-    pub fn next(self) -> Self {
-        Self::ALL[(self as usize + 1) % Self::ALL.len()]
-    }
 }

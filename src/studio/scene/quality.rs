@@ -29,11 +29,14 @@ pub(crate) struct StageQuality {
     automatic: Quality,
     /// Lowest allowed step.
     least: Quality,
+    /// Highest step that is offered.
+    most: Quality,
 }
 
 impl Default for StageQuality {
     fn default() -> Self {
-        Self { chosen: None, automatic: Quality::Smooth, least: Quality::Fast }
+        let (least, most) = (Quality::Fast, Quality::Beautiful);
+        Self { chosen: None, automatic: Quality::Smooth, least, most }
     }
 }
 
@@ -41,6 +44,24 @@ impl StageQuality {
     /// Returns the quality for pictures and films without a window, which have at least smooth edges.
     pub fn for_films() -> Self {
         Self { least: Quality::Smooth, ..Self::default() }
+    }
+
+    /// Returns the steps that are offered on this device. A driver without a graphics card compiles the programs of the highest step for
+    /// minutes, while the window stands still, and needs gigabytes for them.
+    pub fn offered(&self) -> &'static [Quality] {
+        &Quality::ALL[..=self.most as usize]
+    }
+
+    /// Suits a type of device.
+    fn suit(&mut self, device: DeviceType) {
+        self.automatic = for_device(device);
+        self.most = if device == DeviceType::Cpu { Quality::Smooth } else { Quality::Beautiful };
+    }
+
+    /// Chooses the next of the offered steps. The last one is followed by the first.
+    pub fn choose_next(&mut self) {
+        let offered = self.offered();
+        self.chosen = Some(offered[(self.now() as usize + 1) % offered.len()]);
     }
 
     /// Returns the step of the stage's picture.
@@ -110,7 +131,7 @@ fn for_device(device: DeviceType) -> Quality {
 }
 
 fn suit_device(mut quality: ResMut<StageQuality>, adapter: Res<RenderAdapterInfo>) {
-    quality.automatic = for_device(adapter.0.device_type);
+    quality.suit(adapter.0.device_type);
 }
 
 /// Lowers the automatic step while frames take too long.
@@ -184,6 +205,23 @@ mod tests {
         for device in [DeviceType::IntegratedGpu, DeviceType::VirtualGpu, DeviceType::Other] {
             assert_eq!(for_device(device), Quality::Smooth);
         }
+    }
+
+    #[test]
+    fn the_beautiful_picture_is_not_offered_without_a_graphics_card() {
+        let names = |device: DeviceType| {
+            let mut quality = StageQuality::default();
+            quality.suit(device);
+            let mut names = vec![quality.now()];
+            for _ in 0..3 {
+                quality.choose_next();
+                names.push(quality.now());
+            }
+            names
+        };
+        let [fast, smooth, beautiful] = Quality::ALL;
+        assert_eq!(names(DeviceType::Cpu), [fast, smooth, fast, smooth]);
+        assert_eq!(names(DeviceType::DiscreteGpu), [beautiful, fast, smooth, beautiful]);
     }
 
     #[test]

@@ -49,7 +49,7 @@ impl ViewParams<'_> {
             ViewCommand::ResetCamera => self.rig.take(CameraMode::Follow),
             ViewCommand::ToggleOverlay(overlay) => self.overlays.toggle(*overlay),
             ViewCommand::SetQuality(quality) => self.quality.chosen = *quality,
-            ViewCommand::NextQuality => self.quality.chosen = Some(self.quality.now().next()),
+            ViewCommand::NextQuality => self.quality.choose_next(),
             ViewCommand::ToggleTheme => *self.theme = self.theme.other(),
             ViewCommand::TakePicture(area) => {
                 self.screenshots.write(*area);

@@ -6,7 +6,6 @@ use bevy_egui::egui::containers::menu::{MenuButton, MenuConfig};
 use super::stage_card::CardStates;
 use crate::studio::commands::actions::{Situation, actions};
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::commands::quality::Quality;
 use crate::studio::commands::screenshot_area::ScreenshotArea;
 use crate::studio::commands::{Command, ViewCommand, WindowCommand};
 use crate::studio::panels::help::menu::IsOn;
@@ -80,7 +79,7 @@ pub(crate) fn view_bar(
 fn quality_choice(ui: &mut egui::Ui, quality: &StageQuality, commands: &mut Vec<Command>) {
     ui.label("Picture quality (A: next)");
     let automatic = (None, "automatic", "Suits the device and the time that a frame takes");
-    let steps = Quality::ALL.map(|step| (Some(step), step.name(), step.hint()));
+    let steps = quality.offered().iter().map(|step| (Some(*step), step.name(), step.hint()));
     for (choice, name, hint) in std::iter::once(automatic).chain(steps) {
         let name = match choice {
             None if quality.chosen.is_none() => format!("{name}: {}", quality.now().name()),
