@@ -17,10 +17,9 @@ use snakes_core::score::Fitness;
 use snakes_lab::run::RunSource;
 
 impl Args {
-    /// Returns the named preset, or else the command's default, without the changes of other flags.
+    /// Returns the named preset, or else the program's default, without the changes of other flags.
     pub fn preset(&self) -> Result<Preset, CliError> {
-        let named = self.run.settings.preset.as_deref().or(self.default_preset);
-        Ok(load_preset(named.unwrap_or(DEFAULT_PRESET))?)
+        Ok(load_preset(self.run.settings.preset.as_deref().unwrap_or(DEFAULT_PRESET))?)
     }
 
     /// Returns the folder for this run's champions.

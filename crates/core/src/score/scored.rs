@@ -108,13 +108,22 @@ pub fn score(genome: &Genome, trial: &Trial) -> Scored {
 /// trial it calls `goes_on`, and returns without further results if that is false.
 pub fn score_together(
     jobs: &[(&Genome, &Trial)],
+    goes_on: impl FnMut() -> bool,
+    report: impl FnMut(usize, Scored),
+) {
+    score_in(LockStep::default(), jobs, goes_on, report);
+}
+
+/// Does what [`score_together`] does, with this lock step for trials that run side by side.
+fn score_in(
+    mut lock_step: LockStep,
+    jobs: &[(&Genome, &Trial)],
     mut goes_on: impl FnMut() -> bool,
     mut report: impl FnMut(usize, Scored),
 ) {
     let mut scorings: Vec<_> =
         jobs.iter().map(|(genome, trial)| Scoring::of(genome, trial)).collect();
     let mut queue = TrialQueue::of(jobs.len());
-    let mut lock_step = LockStep::default();
     let mut together: Vec<(usize, TrialRun)> = Vec::with_capacity(LANES);
     loop {
         while together.len() < LANES {
@@ -238,7 +247,7 @@ mod tests {
     use crate::genome::GenomeSpace;
     use crate::rng::{Purpose, stream};
     use crate::score::PerturbationList;
-    use crate::world::PhysicsEngine;
+    use crate::world::{PhysicsEngine, VectorLevel};
 
     /// Returns snakes of three and five limbs in the engine *lanes*, on stairs in front of them. Some are disqualified before their trials
     /// end.
@@ -262,10 +271,25 @@ mod tests {
     }
 
     fn together(jobs: &[&(Genome, Trial)]) -> Vec<Option<Scored>> {
+        together_in(LockStep::default(), jobs)
+    }
+
+    fn together_in(lock_step: LockStep, jobs: &[&(Genome, Trial)]) -> Vec<Option<Scored>> {
         let pairs: Vec<_> = jobs.iter().map(|(genome, trial)| (genome, trial)).collect();
         let mut found = vec![None; jobs.len()];
-        score_together(&pairs, || true, |index, scored| found[index] = Some(scored));
+        score_in(lock_step, &pairs, || true, |index, scored| found[index] = Some(scored));
         found
+    }
+
+    #[test]
+    fn in_lanes_a_snake_has_the_same_bits_with_every_set_of_vector_instructions() {
+        let jobs = jobs();
+        let alone: Vec<_> = jobs.iter().map(|(genome, trial)| Some(score(genome, trial))).collect();
+        let jobs: Vec<_> = jobs.iter().collect();
+        for level in VectorLevel::all() {
+            let found = together_in(LockStep::at(level), &jobs);
+            assert_eq!(found, alone, "{}", level.name());
+        }
     }
 
     #[test]

@@ -34,7 +34,7 @@ pub use discontinuity::Discontinuity;
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
-pub use lanes::LanesCommon;
+pub use lanes::{LanesCommon, VectorLevel};
 pub use mount::{Mount, joint_turn};
 #[cfg(test)]
 pub use physics::TESTED_RATES;

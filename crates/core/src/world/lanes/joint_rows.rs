@@ -243,9 +243,10 @@ impl<const N: usize> WideJoint<N> {
     }
 
     /// Builds the rows for the present poses. All impulses begin at zero, not at those of the substep before.
-    #[inline(never)]
-    pub fn build(&mut self, front: &WidePart<N>, rear: &WidePart<N>, common: &LanesCommon) {
-        let ends = [front, rear];
+    #[inline(always)]
+    pub fn build(&mut self, parts: &[WidePart<N>], common: &LanesCommon) {
+        let ends = self.parts.map(|part| &parts[part]);
+        let [front, rear] = ends;
         let levers = [front.axes[1] * self.anchors_m[0], rear.axes[1] * self.anchors_m[1]];
         let gap = (rear.at + levers[1]) - (front.at + levers[0]);
         for axis in 0..2 {
@@ -327,7 +328,7 @@ impl<const N: usize> WideJoint<N> {
     }
 
     /// Makes one pass over the rows, with or without the correction of positions.
-    #[inline(never)]
+    #[inline(always)]
     pub fn solve(&mut self, parts: &mut [WidePart<N>], is_biased: bool) {
         let [front, rear] = self.parts;
         let Some((front, rear)) = both(parts, front, rear) else { return };

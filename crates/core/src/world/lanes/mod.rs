@@ -22,13 +22,15 @@
 //!
 //! # Equal bits
 //! See [`wide`]. Every computation of a lane depends on this lane alone, and consists of sums, products, quotients, roots and comparisons
-//! of single numbers. Therefore neither the other lanes nor the number of lanes nor the processor change a bit.
+//! of single numbers. Therefore neither the other lanes nor the number of lanes nor the processor change a bit. Neither do the vector
+//! instructions that are chosen when the program runs ([`level`]).
 
 mod block;
 mod chain;
 mod contact;
 mod contact_rows;
 mod joint_rows;
+mod level;
 mod part;
 mod restitution;
 mod shared_points;
@@ -38,4 +40,5 @@ mod wide;
 pub use chain::LanesCommon;
 pub(crate) use chain::{Chain, PartState};
 pub(crate) use contact::{Contact, ContactPoint, Touching};
+pub use level::VectorLevel;
 pub(crate) use solver::LaneSolver;

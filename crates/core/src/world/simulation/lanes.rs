@@ -3,7 +3,9 @@
 use rapier3d::prelude::*;
 
 use super::Simulation;
-use crate::world::lanes::{Chain, Contact, LaneSolver, LanesCommon, PartState, Touching};
+use crate::world::lanes::{
+    Chain, Contact, LaneSolver, LanesCommon, PartState, Touching, VectorLevel,
+};
 use crate::world::turning::{product, turned};
 use crate::world::{Disqualification, JointTorque, PhysicsEngine, WorldPlan};
 
@@ -35,7 +37,8 @@ impl LanesWorld {
         let is_chosen = plan.physics.engine == PhysicsEngine::Lanes;
         debug_assert!(!is_chosen || is_possible, "the plan was not checked");
         let is_chosen = is_chosen && is_possible;
-        is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver: LaneSolver::default() }))
+        let solver = LaneSolver::at(VectorLevel::in_use());
+        is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver }))
     }
 
     /// Returns the contacts of the last step.
@@ -160,12 +163,22 @@ impl Simulation {
 }
 
 /// Steps several worlds of the engine *lanes* side by side.
-#[derive(Default)]
 pub struct LockStep {
     solver: LaneSolver<LANES>,
 }
 
+impl Default for LockStep {
+    fn default() -> Self {
+        Self::at(VectorLevel::in_use())
+    }
+}
+
 impl LockStep {
+    /// Makes a lock step that computes with these vector instructions. They change no bit.
+    pub fn at(level: VectorLevel) -> Self {
+        Self { solver: LaneSolver::at(level) }
+    }
+
     /// Advances up to [`LANES`] worlds by one step each, with the same bits as [`Simulation::step`]. All worlds must have the same
     /// [`Simulation::common`].
     pub fn step(
