@@ -138,7 +138,7 @@ fn score_in(
             if !goes_on() {
                 return;
             }
-            let Some(next) = queue.next_beside(beside, &scorings) else { break };
+            let Some(next) = queue.next_beside(beside.as_ref(), &scorings) else { break };
             together.push(next);
         }
         if together.is_empty() {
@@ -197,10 +197,10 @@ impl TrialQueue {
     /// fits.
     fn next_beside(
         &mut self,
-        beside: Option<Option<LanesCommon>>,
+        beside: Option<&Option<LanesCommon>>,
         scorings: &[Scoring<'_>],
     ) -> Option<(usize, TrialRun)> {
-        let fits = |run: &TrialRun| beside.is_none_or(|beside| beside == run.rollout.common());
+        let fits = |run: &TrialRun| beside.is_none_or(|beside| *beside == run.rollout.common());
         if let Some(index) = self.set_aside.iter().position(|(_, run)| fits(run)) {
             return Some(self.set_aside.remove(index));
         }
@@ -308,6 +308,28 @@ mod tests {
             let few: Vec<_> = jobs.iter().take(beside).collect();
             assert_eq!(together(&few), alone[..beside]);
         }
+    }
+
+    /// Creatures and soft snakes of many shapes run beside those of the same shape.
+    #[test]
+    fn in_lanes_bodies_of_all_kinds_have_the_same_bits_alone_and_in_a_batch() {
+        let mut jobs = Vec::new();
+        for (preset, count) in [("creatures", 24), ("squishy", 4), ("bodies", 6)] {
+            let settings = crate::save::load_preset(preset).expect("shipped").settings;
+            let mut trial = Trial { duration_s: 1.0, ..settings.trial };
+            trial.physics.engine = PhysicsEngine::Lanes;
+            for individual in 0..count {
+                let mut rng = stream(1, 1, individual, Purpose::Birth);
+                let genome = settings.genome.random_genome(trial.genome_shape(), &mut rng);
+                jobs.extend(std::iter::repeat_n((genome, trial.clone()), 2));
+            }
+        }
+        let alone: Vec<_> = jobs.iter().map(|(genome, trial)| Some(score(genome, trial))).collect();
+        let healthy = |scored: &&Option<Scored>| {
+            scored.as_ref().is_some_and(|scored| scored.evaluation.disqualified.is_none())
+        };
+        assert!(alone.iter().filter(healthy).count() > 20);
+        assert_eq!(together(&jobs.iter().collect::<Vec<_>>()), alone);
     }
 
     #[test]

@@ -11,12 +11,6 @@ use super::level::BASELINE;
 use super::part::{MOST_TURN_RAD, WidePart};
 use super::wide::Wide;
 
-/// Returns the order in which the joints are solved, as in rapier: first every second joint, which share no parts, and then the joints
-/// between them.
-fn alternating(joints: usize) -> impl Iterator<Item = usize> {
-    (0..joints).step_by(2).chain((1..joints).step_by(2))
-}
-
 /// Solver that steps up to `N` snakes side by side. It holds working memory only.
 #[derive(Debug, Clone)]
 pub(crate) struct LaneSolver<const N: usize> {
@@ -40,7 +34,7 @@ impl<const N: usize> LaneSolver<N> {
     pub fn advance(&mut self, chains: &mut [&mut Chain]) {
         let used = chains.len().min(N);
         let chains = &mut chains[..used];
-        let Some(common) = chains.first().map(|chain| chain.common) else { return };
+        let Some(common) = chains.first().map(|chain| chain.common.clone()) else { return };
         for chain in chains.iter_mut() {
             chain.find_contacts();
         }
@@ -61,7 +55,7 @@ impl<const N: usize> LaneSolver<N> {
     /// Loads the snakes into the lanes. A lane without a snake gets a copy of the first one.
     fn load(&mut self, common: &LanesCommon, chains: &[&mut Chain]) {
         self.parts.resize(common.parts, WidePart::EMPTY);
-        self.joints.resize(common.joints, WideJoint::EMPTY);
+        self.joints.resize(common.joints.len(), WideJoint::EMPTY);
         let of_lane = |lane: usize| chains.get(lane).unwrap_or(&chains[0]);
         for lane in 0..N {
             let chain = of_lane(lane);
@@ -192,8 +186,8 @@ fn solve_joints<S: Simd, const N: usize>(
     simd.vectorize(
         #[inline(always)]
         || {
-            for index in alternating(joints.len()) {
-                joints[index].solve(parts, is_biased);
+            for joint in joints.iter_mut() {
+                joint.solve(parts, is_biased);
             }
         },
     );

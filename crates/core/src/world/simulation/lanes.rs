@@ -7,7 +7,7 @@ use crate::world::lanes::{
     Chain, Contact, LaneSolver, LanesCommon, PartState, Touching, VectorLevel,
 };
 use crate::world::turning::{product, turned};
-use crate::world::{Disqualification, JointTorque, PhysicsEngine, WorldPlan};
+use crate::world::{Disqualification, JointPlan, JointTorque, PhysicsEngine, WorldPlan};
 
 /// Number of snakes that are advanced side by side: as many as AVX has lanes, and twice as many as SSE2 and NEON have. On web pages, where
 /// the size of the code counts, it is the number of lanes of WebAssembly.
@@ -30,15 +30,11 @@ pub(super) struct LanesWorld {
 }
 
 impl LanesWorld {
-    /// Builds the world of a plan that selects the engine *lanes*; `None` if it selects rapier. Plans that *lanes* cannot simulate are
-    /// rejected earlier. If one still arrived, rapier would simulate it.
+    /// Builds the world of a plan that selects the engine *lanes*; `None` if it selects rapier.
     pub fn of(plan: &WorldPlan) -> Option<Box<Self>> {
-        let is_possible = plan.body.obstacle_in_lanes().is_none();
         let is_chosen = plan.physics.engine == PhysicsEngine::Lanes;
-        debug_assert!(!is_chosen || is_possible, "the plan was not checked");
-        let is_chosen = is_chosen && is_possible;
-        let solver = LaneSolver::at(VectorLevel::in_use());
-        is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver }))
+        let solver = || LaneSolver::at(VectorLevel::in_use());
+        is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver: solver() }))
     }
 
     /// Returns the contacts of the last step.
@@ -119,6 +115,11 @@ impl Simulation {
     /// bits on every processor.
     pub(super) fn product(&self, first: Rotation, second: Rotation) -> Rotation {
         if self.lanes.is_some() { product(first, second) } else { first * second }
+    }
+
+    /// Returns the axes of a joint in the world, given the rotation of its parent: the joint bends about x and twists about y.
+    pub(super) fn joint_axes(&self, joint: &JointPlan, parent: Rotation) -> Rotation {
+        joint.mount.map_or(parent, |mount| self.product(parent, mount.turn))
     }
 
     /// Returns the inertia of a part about its own axes in the engine *lanes*, in kg·m²; `None` in worlds of rapier.
