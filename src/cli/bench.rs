@@ -10,6 +10,7 @@ use super::error::CliError;
 use super::output::{print, print_json};
 use snakes_core::evolve::Champion;
 use snakes_core::save::load_champion;
+use snakes_core::schema::Choices;
 use snakes_lab::run::bench::{BenchReport, Workload, bench};
 use snakes_lab::run::headless::HeadlessError;
 
@@ -45,8 +46,13 @@ fn workload_of(file: &Path) -> Result<Workload, CliError> {
 }
 
 fn table(report: &BenchReport) -> String {
+    let engine = match report.simd {
+        Some(simd) => format!("{}, {} lanes, {simd}", report.engine.choice().name, report.lanes),
+        None => report.engine.choice().name.to_owned(),
+    };
     format!(
-        "threads                  {}\n\
+        "engine                   {engine}\n\
+         threads                  {}\n\
          steps_per_s              {:.0}\n\
          sim_s_per_s              {:.1}  ({:.1} per thread)\n\
          one thread               {:.1} sim_s_per_s\n\

@@ -39,15 +39,20 @@ use output::survive_large_files;
 use output::{cancel_on_interrupt, print};
 
 use snakes_core::save::run_name;
+use snakes_core::world::VectorLevel;
 use snakes_lab::run::headless::{self, say};
 use snakes_lab::run::report_panics;
+
+/// Environment variable that names the vector instructions of the engine *lanes*, for measurements and tests.
+const VECTORS_VARIABLE: &str = "SNAKES_SIMD";
 
 /// Runs the program with these arguments, of which the first is the program's name.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     report_panics();
     #[cfg(unix)]
     survive_large_files();
-    let result = args::parse(arguments).and_then(|parsed| match parsed {
+    let parsed = choose_vectors().and_then(|()| args::parse(arguments));
+    let result = parsed.and_then(|parsed| match parsed {
         args::Parsed::Run(args, task) => dispatch(*args, &task),
         args::Parsed::Print(text) => print(&text),
     });
@@ -58,6 +63,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Chooses the vector instructions that the environment names, if it names any.
+fn choose_vectors() -> Result<(), CliError> {
+    let Some(name) = std::env::var_os(VECTORS_VARIABLE) else { return Ok(()) };
+    let chosen = VectorLevel::choose(&name.to_string_lossy());
+    Ok(chosen.map_err(error::of_flag(VECTORS_VARIABLE))?)
 }
 
 /// Performs the task. If earlier results turn out to be wrong, because a machine computed other bits after right ones, everything

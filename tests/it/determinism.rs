@@ -4,6 +4,7 @@
 //! builds, with and without the studio: this test runs in all of them.
 
 use snakes_core::Processors;
+use snakes_core::world::VectorLevel;
 use snakes_lab::run::verify::Trajectories;
 use snakes_lab::run::{LocalPool, RunControl};
 
@@ -55,15 +56,22 @@ fn verify_prints_a_table_and_the_fingerprint_of_the_reference() {
     assert_eq!(agreeing, reference.trajectories.len());
 }
 
-/// The program gives the same bits without the variants of float functions that the C library selects by processor.
-#[cfg(target_os = "linux")]
+/// The program gives the golden bits with every set of vector instructions that the machine has, and without the variants of float
+/// functions that the C library selects by processor. The strongest set is tested by [`runs_have_the_golden_bits`].
 #[test]
-fn the_vector_and_fma_variants_of_the_c_library_change_no_bit() {
-    let folder = folder();
-    let mut command = super::program::snakes(folder.path(), "verify --json");
-    command.env("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-AVX,-FMA,-FMA4,-SSE4_2,-SSE4_1");
-    let output = command.output().expect("the program starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+fn vector_instructions_and_variants_of_the_c_library_change_no_bit() {
+    let levels = VectorLevel::all();
+    // A machine with a single set runs it again without the variants.
+    let weaker = &levels[..levels.len().saturating_sub(1).max(1)];
+    for level in weaker {
+        let folder = folder();
+        let mut command = super::program::snakes(folder.path(), "verify --json");
+        command.env("SNAKES_SIMD", level.name());
+        command.env("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-AVX,-FMA,-FMA4,-SSE4_2,-SSE4_1");
+        let output = command.output().expect("the program starts");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{}: {said}", level.name());
+    }
 }
 
 /// Checks that a run with these settings, in which stairs evolve, ends with more than three stairs, and with the same hash on one,

@@ -3,8 +3,9 @@
 use serde_json::json;
 use snakes_core::evolve::StrategyKind;
 use snakes_core::save::load_preset;
+use snakes_core::world::{LANES, VectorLevel};
 
-use super::program::{folder, json_lines, run, stdout_of, with_slashes};
+use super::program::{folder, json_lines, run, snakes, stdout_of, with_slashes};
 
 const SMALL: &str =
     "--no-render --set newborns=0 --population 8 --generations 3 --duration 1 --seed 4";
@@ -311,9 +312,23 @@ fn a_champion_that_does_not_replay_is_exported_with_the_result_that_it_has_here(
 fn the_bench_reports_its_figures() {
     let folder = folder();
     let figures = &json_lines(folder.path(), "bench --threads 1 --json")[0];
+    assert_eq!(figures["engine"], "lanes", "{figures}");
+    assert_eq!(figures["lanes"], LANES, "{figures}");
+    assert_eq!(figures["simd"], VectorLevel::in_use().name(), "{figures}");
     for field in ["steps_per_s", "sim_s_per_s", "sim_s_per_s_per_thread", "ratio_to_bare_rapier"] {
         assert!(figures[field].as_f64().expect(field) > 0.0, "{figures}");
     }
+}
+
+#[test]
+fn vector_instructions_that_this_machine_does_not_have_are_refused() {
+    let folder = folder();
+    let mut command = snakes(folder.path(), "show presets");
+    let output = command.env("SNAKES_SIMD", "mmx").output().expect("the program starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    let names: Vec<_> = VectorLevel::all().iter().map(|level| level.name()).collect();
+    let expected = format!("SNAKES_SIMD is mmx; allowed: {}", names.join(", "));
+    assert!(output.status.code() == Some(2) && said.contains(&expected), "{said}");
 }
 
 #[test]

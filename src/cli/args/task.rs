@@ -26,8 +26,6 @@ pub struct Args {
     /// Flags of the window.
     #[cfg_attr(not(feature = "studio"), expect(dead_code, reason = "this build has no window"))]
     pub window: WindowFlags,
-    /// Preset of the command if none is named; `None` for the program's default.
-    pub(super) default_preset: Option<&'static str>,
 }
 
 /// A task of the program.
@@ -72,9 +70,6 @@ pub enum Task {
     Manual(Option<PathBuf>),
 }
 
-/// Default preset of `snakes bench`: the run of the report.
-const BENCH_PRESET: &str = "report";
-
 impl CommandLine {
     /// Returns the task and its flags. `matches` tells which flags are given.
     ///
@@ -84,7 +79,7 @@ impl CommandLine {
         let Self { no_render, run, workers, output, window, command } = self;
         let Some(command) = command else {
             let json = output.json;
-            let args = Args { json, run, workers, window, ..Args::default() };
+            let args = Args { json, run, workers, window };
             if no_render {
                 refuse::<WindowFlags>(matches, "snakes --no-render; leave out --no-render")?;
                 return Ok((args, Task::Run));
@@ -111,7 +106,7 @@ impl CommandLine {
                     refuse_server(matches, "snakes replay")?;
                     refuse_ids(matches, &["from"], "snakes replay")?;
                 }
-                args = Args { json: output.json, run, workers, window, ..args };
+                args = Args { json: output.json, run, workers, window };
                 if no_render { Task::CheckReplay(files) } else { Task::Window(files) }
             }
             CliCommand::Exam { exam, workers, output } => {
@@ -147,7 +142,6 @@ impl CommandLine {
             CliCommand::Bench { file, settings, threads, output } => {
                 (args.json, args.run.settings) = (output.json, settings);
                 args.workers.threads = threads;
-                args.default_preset = Some(BENCH_PRESET);
                 Task::Bench(file)
             }
             CliCommand::Worker { threads, server } => {

@@ -13,7 +13,7 @@ use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::Champion;
 use snakes_core::genome::{BodyChange, ControllerKind, Genome, GenomeSpace, Segment};
 use snakes_core::rng::{Purpose, stream};
-use snakes_core::score::{Trial, evaluate};
+use snakes_core::score::evaluate;
 use snakes_core::world::BodyPlan;
 use snakes_lab::run::{BackgroundTask, Tuned, caught, tune_controller};
 
@@ -237,7 +237,7 @@ impl Edited {
 
     /// Checks whether the body can be simulated.
     fn check(&self) -> Result<(), String> {
-        self.trial().check_genome(&self.genome).map_err(|error| error.to_string())
+        self.original.trial().check_genome(&self.genome).map_err(|error| error.to_string())
     }
 
     /// Replaces the genome, as a step that can be undone.
@@ -291,15 +291,10 @@ impl Edited {
         }
     }
 
-    /// Returns the original's trial. Its engine becomes rapier if the original's engine cannot simulate the edited body.
-    fn trial(&self) -> Trial {
-        self.original.trial().clone().suited_to(&self.genome)
-    }
-
     /// Returns the edited snake, with the evaluation of the original in place of its own.
     fn unevaluated(&self) -> Result<Champion, String> {
         self.check()?;
-        let (genome, trial) = (self.genome.clone(), self.trial());
+        let (genome, trial) = (self.genome.clone(), self.original.trial().clone());
         let original = self.original.champion();
         let (evaluation, origin) = (original.evaluation, original.origin.clone());
         Ok(Champion { genome, trial, evaluation, chosen_by: None, origin })
@@ -314,7 +309,7 @@ impl Edited {
 
     fn tune(&mut self) -> Result<(), String> {
         self.check()?;
-        let (genome, trial) = (self.genome.clone(), self.trial());
+        let (genome, trial) = (self.genome.clone(), self.original.trial().clone());
         self.attempts += 1;
         let size = (TUNING, self.attempts);
         let task = BackgroundTask::start_counted(TUNING, move |control| {

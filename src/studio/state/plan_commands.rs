@@ -12,7 +12,6 @@ use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::StrategyKind;
 use snakes_core::genome::ControllerKind;
 use snakes_core::schema::Choices;
-use snakes_core::score::Trial;
 
 /// Describes the setting that was changed because it has to suit the chosen strategy or controller.
 fn partner_in_words((field, name): (&str, &str)) -> String {
@@ -24,10 +23,6 @@ fn partner_in_words((field, name): (&str, &str)) -> String {
             "Bodies evolve now, to suit the strategy.".to_owned()
         }
         "genome.bodies.vary" => "Bodies no longer evolve, to suit the strategy.".to_owned(),
-        Trial::ENGINE_FIELD => {
-            "The physics engine is now rapier: lanes simulates only rigid limbs in a row."
-                .to_owned()
-        }
         _ => StrategyKind::named(field, name)
             .map(|kind| format!("The strategy is now {}, to suit your choice.", kind.title()))
             .unwrap_or_default(),

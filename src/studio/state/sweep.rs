@@ -2,7 +2,7 @@
 
 use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
-use snakes_core::evolve::{Settings, fields, with_fields_and_engine, world_in_words};
+use snakes_core::evolve::{Settings, fields, with_fields, world_in_words};
 use snakes_core::schema::{NumberRange, SettingKind, SettingValue, list};
 use snakes_core::score::Trial;
 
@@ -37,7 +37,7 @@ pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, Stri
         }
     };
     let world = |value: f32| -> Option<StagedChampion> {
-        let trial = with_fields_and_engine(&settings, &[(field, &value.to_string())]).ok()?.trial;
+        let trial = with_fields(&settings, [(field, &*value.to_string())]).ok()?.trial;
         let words = if trial == *champion.trial() {
             let value = listed.setting.value_in_words(&listed.value);
             format!("{} {value} (as before)", listed.setting.short_name())
@@ -140,13 +140,13 @@ mod tests {
     }
 
     #[test]
-    fn softness_is_swept_in_rapier() {
+    fn softness_is_swept_in_the_engine_of_the_champion() {
         let mut trial = climber(0).trial().clone();
         trial.physics.engine = PhysicsEngine::Lanes;
         let in_lanes = climber(0).in_world(&trial, "lanes".to_owned());
         let show = sweep(&in_lanes, "trial.agent.youngs_modulus_pa").expect("soft snakes");
         let engines = show.champions.iter().map(|staged| staged.trial().physics.engine);
-        assert!(engines.eq(show.champions.iter().map(|_| PhysicsEngine::Rapier)));
+        assert!(engines.eq(show.champions.iter().map(|_| PhysicsEngine::Lanes)));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use bevy::prelude::*;
 use super::current_run::CurrentRun;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
-use snakes_core::evolve::{RunPlan, Settings, with_fields_and_engine, world_in_words};
+use snakes_core::evolve::{RunPlan, Settings, with_fields, world_in_words};
 use snakes_core::score::{Rollout, Trial};
 use snakes_core::world::PhysicsSettings;
 
@@ -113,7 +113,7 @@ pub(crate) fn what_if(
         // Other differences between the next run's world and the stage are ignored.
         WorldChange::Fields(changes) => {
             let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
-            let changed = with_fields_and_engine(&settings, changes);
+            let changed = with_fields(&settings, changes.iter().copied());
             changed.map_err(|error| error.to_string())?.trial
         }
         // Duration, fitness and engine are kept, so that the lanes remain comparable.
@@ -127,8 +127,7 @@ pub(crate) fn what_if(
             energy_cost_per_kj: so_far.trial().energy_cost_per_kj,
             repeats: so_far.trial().repeats.clone(),
             ..next.trial.clone()
-        }
-        .suited_to(&so_far.champion().genome),
+        },
     };
     if trial == *so_far.trial() {
         return Ok(None);

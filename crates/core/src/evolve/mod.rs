@@ -32,7 +32,7 @@ pub use settings::{
     HalvingSettings, LARGEST_POPULATION, LadderSettings, MapElitesSettings, MccSettings, Mutation,
     NeatSettings, NoveltySettings, ParentSelection, PoetSettings, QLearningSettings, RestartKind,
     Settings, StrategyInfo, StrategyKind, XcsRunSettings, ZcsRunSettings, changed_values,
-    check_effects, fields, with_field, with_fields, with_fields_and_engine, with_value,
+    check_effects, fields, with_field, with_fields, with_value,
 };
 pub use stairs_tree::{Agent, StairsCount, StairsNode, StairsTree, Transfer};
 pub use strategies::{begin, resume};

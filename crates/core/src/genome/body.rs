@@ -50,11 +50,6 @@ impl BodyGenes {
         !self.nodes.is_empty()
     }
 
-    /// Returns whether these genes contain a modulus of elasticity, which can make blocks soft.
-    pub fn is_soft(&self) -> bool {
-        self.segments.iter().any(|segment| segment.youngs_modulus_pa.is_some())
-    }
-
     /// Returns the number of blocks or parts that the genes determine; 0 if the trial determines the blocks.
     pub fn block_count(&self) -> usize {
         if self.is_branching() { grow(&self.nodes).len() } else { self.segments.len() }

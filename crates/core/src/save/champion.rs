@@ -144,7 +144,8 @@ pub fn parse_champion(path: &Path, text: &str) -> Result<LoadedChampion, SaveErr
 impl LoadedChampion {
     /// Returns whether this program computes the same bits as the program that recorded the champion.
     pub fn is_of_this_engine(&self) -> bool {
-        has_bits_of_this(self.engine, self.champion.trial.physics.engine)
+        let Champion { genome, trial, .. } = &self.champion;
+        has_bits_of_this(self.engine, trial.physics.engine, genome.body.is_branching())
     }
 }
 

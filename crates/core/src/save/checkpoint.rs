@@ -13,7 +13,7 @@ use super::same_engine::check_engine;
 use crate::check::{Invalid, hash_of, quoted, within};
 use crate::engine::{ENGINE_VERSION, Engine, Processors};
 use crate::evolve::{
-    Front, FrontMember, GenerationRecord, RunPlan, StrategyState, resume, run_hash,
+    Front, FrontMember, GenerationRecord, RunPlan, Settings, StrategyState, resume, run_hash,
 };
 use crate::schema::is_default;
 
@@ -137,8 +137,9 @@ pub fn parse_checkpoint(
         engine, processors, plan: of, generation, run_hash, strategy, front, ..
     } = file;
     let read = || {
-        let physics = plan.settings.trial.physics.engine;
-        check_engine(Engine { version: engine, processors }, physics)?;
+        let Settings { trial, genome, .. } = &plan.settings;
+        let recorded = Engine { version: engine, processors };
+        check_engine(recorded, trial.physics.engine, genome.has_creatures())?;
         let expected = fingerprint(plan);
         if of != expected {
             let allowed = format!(

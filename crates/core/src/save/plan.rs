@@ -72,7 +72,9 @@ pub fn parse_plan(path: &Path, text: &str) -> Result<RunPlan, SaveError> {
 
 fn plan_of(file: RunV4) -> Result<RunPlan, Invalid> {
     let RunV4 { engine, processors, preset, seed, settings, founder, .. } = file;
-    check_engine(Engine { version: engine, processors }, settings.trial.physics.engine)?;
+    let (recorded, physics) =
+        (Engine { version: engine, processors }, settings.trial.physics.engine);
+    check_engine(recorded, physics, settings.genome.has_creatures())?;
     name("preset", &preset)?;
     settings.check().map_err(|error| error.inside("settings"))?;
     let plan = RunPlan::new(&preset, seed, settings);

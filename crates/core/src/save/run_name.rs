@@ -3,7 +3,7 @@
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::same_engine::engine_of;
-use crate::evolve::{RunPlan, SettingChange};
+use crate::evolve::{RunPlan, SettingChange, Settings};
 
 /// Returns the name of a run's folder: the preset, the seed, and eight hexadecimal digits that stand for everything else that determines
 /// the bits. Folders with equal names therefore have the same run, and no run overwrites another.
@@ -20,7 +20,8 @@ pub fn settings_fingerprint(plan: &RunPlan) -> String {
         let genome = founder.genome();
         format!(" from {} {:016x}", genome.controller.kind(), genome.hash())
     });
-    let engine = engine_of(plan.settings.trial.physics.engine);
+    let Settings { trial, genome, .. } = &plan.settings;
+    let engine = engine_of(trial.physics.engine, genome.has_creatures());
     let text = format!("{engine} {settings}{}", founder.unwrap_or_default());
     format!("{:08x}", xxh3_64(text.as_bytes()) as u32)
 }
@@ -37,7 +38,6 @@ pub fn fingerprint(plan: &RunPlan) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::Settings;
 
     #[test]
     fn run_names_differ_between_runs_and_contain_no_path_separator() {

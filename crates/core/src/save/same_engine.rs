@@ -4,27 +4,37 @@ use crate::check::Invalid;
 use crate::engine::{ENGINE_VERSION, Engine, Processors};
 use crate::world::PhysicsEngine;
 
-/// Returns the engine of this program for runs with a physics engine. Results of *lanes* are equal on all processors, so their engine has
-/// the default processors.
-pub fn engine_of(physics: PhysicsEngine) -> Engine {
-    let processors = match physics {
-        PhysicsEngine::Rapier => Processors::THIS,
-        PhysicsEngine::Lanes => Processors::default(),
-    };
+/// Returns whether results with a physics engine are equal on all processors. Those of *lanes* are, unless bodies branch: a branching body
+/// grows with the rotations of rapier's library, whose bits differ between processors.
+fn is_equal_everywhere(physics: PhysicsEngine, branches: bool) -> bool {
+    physics == PhysicsEngine::Lanes && !branches
+}
+
+/// Returns the engine of this program for runs with a physics engine, whose bodies branch or not. Where results are equal on all
+/// processors, it has the default processors.
+pub fn engine_of(physics: PhysicsEngine, branches: bool) -> Engine {
+    let is_equal = is_equal_everywhere(physics, branches);
+    let processors = if is_equal { Processors::default() } else { Processors::THIS };
     Engine { version: ENGINE_VERSION, processors }
 }
 
-/// Returns whether the engine `recorded` computes the same bits with a physics engine as this build of the program.
-pub fn has_bits_of_this(recorded: Engine, physics: PhysicsEngine) -> bool {
-    match physics {
-        PhysicsEngine::Rapier => recorded == Engine::THIS,
-        PhysicsEngine::Lanes => recorded.version == ENGINE_VERSION,
+/// Returns whether the engine `recorded` computes the same bits with a physics engine as this build of the program, for bodies that branch
+/// or do not.
+pub fn has_bits_of_this(recorded: Engine, physics: PhysicsEngine, branches: bool) -> bool {
+    if is_equal_everywhere(physics, branches) {
+        recorded.version == ENGINE_VERSION
+    } else {
+        recorded == Engine::THIS
     }
 }
 
 /// Refuses a run that this build of the program would continue with other bits.
-pub fn check_engine(recorded: Engine, physics: PhysicsEngine) -> Result<(), Invalid> {
-    if has_bits_of_this(recorded, physics) {
+pub fn check_engine(
+    recorded: Engine,
+    physics: PhysicsEngine,
+    branches: bool,
+) -> Result<(), Invalid> {
+    if has_bits_of_this(recorded, physics, branches) {
         return Ok(());
     }
     let allowed =
@@ -44,12 +54,14 @@ mod tests {
             .filter(|processors| *processors != Processors::THIS);
         for processors in others {
             let other = of(ENGINE_VERSION, processors);
-            assert!(!has_bits_of_this(other, PhysicsEngine::Rapier));
-            check_engine(other, PhysicsEngine::Rapier).expect_err("other bits");
-            check_engine(other, PhysicsEngine::Lanes).expect("the same bits");
+            assert!(!has_bits_of_this(other, PhysicsEngine::Rapier, false));
+            check_engine(other, PhysicsEngine::Rapier, false).expect_err("other bits");
+            check_engine(other, PhysicsEngine::Lanes, false).expect("the same bits");
+            check_engine(other, PhysicsEngine::Lanes, true).expect_err("other creatures");
         }
         let earlier = of(ENGINE_VERSION - 1, Processors::THIS);
-        check_engine(earlier, PhysicsEngine::Lanes).expect_err("another version");
-        assert_eq!(engine_of(PhysicsEngine::Lanes).to_string(), ENGINE_VERSION.to_string());
+        check_engine(earlier, PhysicsEngine::Lanes, false).expect_err("another version");
+        assert_eq!(engine_of(PhysicsEngine::Lanes, false).to_string(), ENGINE_VERSION.to_string());
+        assert_eq!(engine_of(PhysicsEngine::Lanes, true), Engine::THIS);
     }
 }

@@ -37,7 +37,7 @@ choices! {
              nosings; 30 s each. A landing counts once the middles of all blocks have been behind the last tread for half a second.";
         Engine = "engine", "The other engine",
             "20 trials in the program's other physics engine, from other starts (±0.2 m, ±5°), and the same trials in its own: lanes \
-             examines champions of rapier, and rapier those of lanes. Only for rigid limbs in a row, which both can simulate, and only if it is named.";
+             examines champions of rapier, and rapier those of lanes. Only if it is named.";
     }
 }
 
@@ -113,7 +113,6 @@ impl ExamSuite {
     pub fn concerns(self, genome: &Genome) -> bool {
         match self {
             Self::Lesion => genome.controller.kind().senses_surroundings(),
-            Self::Engine => !genome.body.is_branching() && !genome.body.is_soft(),
             _ => true,
         }
     }

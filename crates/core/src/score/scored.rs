@@ -108,13 +108,22 @@ pub fn score(genome: &Genome, trial: &Trial) -> Scored {
 /// trial it calls `goes_on`, and returns without further results if that is false.
 pub fn score_together(
     jobs: &[(&Genome, &Trial)],
+    goes_on: impl FnMut() -> bool,
+    report: impl FnMut(usize, Scored),
+) {
+    score_in(LockStep::default(), jobs, goes_on, report);
+}
+
+/// Does what [`score_together`] does, with this lock step for trials that run side by side.
+fn score_in(
+    mut lock_step: LockStep,
+    jobs: &[(&Genome, &Trial)],
     mut goes_on: impl FnMut() -> bool,
     mut report: impl FnMut(usize, Scored),
 ) {
     let mut scorings: Vec<_> =
         jobs.iter().map(|(genome, trial)| Scoring::of(genome, trial)).collect();
     let mut queue = TrialQueue::of(jobs.len());
-    let mut lock_step = LockStep::default();
     let mut together: Vec<(usize, TrialRun)> = Vec::with_capacity(LANES);
     loop {
         while together.len() < LANES {
@@ -129,7 +138,7 @@ pub fn score_together(
             if !goes_on() {
                 return;
             }
-            let Some(next) = queue.next_beside(beside, &scorings) else { break };
+            let Some(next) = queue.next_beside(beside.as_ref(), &scorings) else { break };
             together.push(next);
         }
         if together.is_empty() {
@@ -188,10 +197,10 @@ impl TrialQueue {
     /// fits.
     fn next_beside(
         &mut self,
-        beside: Option<Option<LanesCommon>>,
+        beside: Option<&Option<LanesCommon>>,
         scorings: &[Scoring<'_>],
     ) -> Option<(usize, TrialRun)> {
-        let fits = |run: &TrialRun| beside.is_none_or(|beside| beside == run.rollout.common());
+        let fits = |run: &TrialRun| beside.is_none_or(|beside| *beside == run.rollout.common());
         if let Some(index) = self.set_aside.iter().position(|(_, run)| fits(run)) {
             return Some(self.set_aside.remove(index));
         }
@@ -238,7 +247,7 @@ mod tests {
     use crate::genome::GenomeSpace;
     use crate::rng::{Purpose, stream};
     use crate::score::PerturbationList;
-    use crate::world::PhysicsEngine;
+    use crate::world::{PhysicsEngine, VectorLevel};
 
     /// Returns snakes of three and five limbs in the engine *lanes*, on stairs in front of them. Some are disqualified before their trials
     /// end.
@@ -262,10 +271,25 @@ mod tests {
     }
 
     fn together(jobs: &[&(Genome, Trial)]) -> Vec<Option<Scored>> {
+        together_in(LockStep::default(), jobs)
+    }
+
+    fn together_in(lock_step: LockStep, jobs: &[&(Genome, Trial)]) -> Vec<Option<Scored>> {
         let pairs: Vec<_> = jobs.iter().map(|(genome, trial)| (genome, trial)).collect();
         let mut found = vec![None; jobs.len()];
-        score_together(&pairs, || true, |index, scored| found[index] = Some(scored));
+        score_in(lock_step, &pairs, || true, |index, scored| found[index] = Some(scored));
         found
+    }
+
+    #[test]
+    fn in_lanes_a_snake_has_the_same_bits_with_every_set_of_vector_instructions() {
+        let jobs = jobs();
+        let alone: Vec<_> = jobs.iter().map(|(genome, trial)| Some(score(genome, trial))).collect();
+        let jobs: Vec<_> = jobs.iter().collect();
+        for level in VectorLevel::all() {
+            let found = together_in(LockStep::at(level), &jobs);
+            assert_eq!(found, alone, "{}", level.name());
+        }
     }
 
     #[test]
@@ -284,6 +308,28 @@ mod tests {
             let few: Vec<_> = jobs.iter().take(beside).collect();
             assert_eq!(together(&few), alone[..beside]);
         }
+    }
+
+    /// Creatures and soft snakes of many shapes run beside those of the same shape.
+    #[test]
+    fn in_lanes_bodies_of_all_kinds_have_the_same_bits_alone_and_in_a_batch() {
+        let mut jobs = Vec::new();
+        for (preset, count) in [("creatures", 24), ("squishy", 4), ("bodies", 6)] {
+            let settings = crate::save::load_preset(preset).expect("shipped").settings;
+            let mut trial = Trial { duration_s: 1.0, ..settings.trial };
+            trial.physics.engine = PhysicsEngine::Lanes;
+            for individual in 0..count {
+                let mut rng = stream(1, 1, individual, Purpose::Birth);
+                let genome = settings.genome.random_genome(trial.genome_shape(), &mut rng);
+                jobs.extend(std::iter::repeat_n((genome, trial.clone()), 2));
+            }
+        }
+        let alone: Vec<_> = jobs.iter().map(|(genome, trial)| Some(score(genome, trial))).collect();
+        let healthy = |scored: &&Option<Scored>| {
+            scored.as_ref().is_some_and(|scored| scored.evaluation.disqualified.is_none())
+        };
+        assert!(alone.iter().filter(healthy).count() > 20);
+        assert_eq!(together(&jobs.iter().collect::<Vec<_>>()), alone);
     }
 
     #[test]

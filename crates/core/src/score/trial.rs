@@ -4,9 +4,9 @@ use super::{AgentSettings, Behaviour, Evaluation, Fitness, PerturbationList, Rep
 use crate::check::Invalid;
 use crate::genome::{Genome, GenomeShape};
 use crate::schema::{
-    self, Choices, Section, SettingGroup, Walk, absent, choice, number, setting_group, settings,
+    self, Section, SettingGroup, Walk, absent, choice, number, setting_group, settings,
 };
-use crate::world::{HealthLimits, PhysicsEngine, PhysicsSettings, Stairs, Surface, WorldPlan};
+use crate::world::{HealthLimits, PhysicsSettings, Stairs, Surface, WorldPlan};
 
 setting_group! {
     /// The conditions of an evaluation: place, duration, surfaces, body, and measure of fitness.
@@ -166,12 +166,6 @@ impl Trial {
             let allowed = format!("{expected}, one per joint of {} limbs", body.limbs());
             return Err(Invalid::new("controller joints", format!("{joints} joints"), allowed));
         }
-        if self.physics.engine == PhysicsEngine::Lanes
-            && let Some(obstacle) = body.obstacle_in_lanes()
-        {
-            let allowed = format!("rapier for this snake, because {obstacle}");
-            return Err(Invalid::new("physics.engine", self.physics.engine.choice().name, allowed));
-        }
         if !genome.body.has_own_blocks() {
             self.agent
                 .check_softness(genome.body.density_kg_m3)
@@ -182,15 +176,6 @@ impl Trial {
 
     /// Path of the physics engine in settings.
     pub const ENGINE_FIELD: &str = "trial.physics.engine";
-
-    /// Returns this trial, with the engine rapier if its own engine cannot simulate the body of a genome.
-    #[must_use]
-    pub fn suited_to(mut self, genome: &Genome) -> Self {
-        if self.agent.body_plan(genome).obstacle_in_lanes().is_some() {
-            self.physics.engine = PhysicsEngine::Rapier;
-        }
-        self
-    }
 
     /// Returns the plan of the world in which this trial evaluates a genome.
     pub fn world_plan(&self, genome: &Genome) -> WorldPlan {

@@ -128,6 +128,13 @@ impl BodyPlan {
         self.parts.iter().map(|part| part.length_m).sum()
     }
 
+    /// Returns the two parts that each joint, and after the joints each spring, connects. Snakes of equal pairs can be simulated side by
+    /// side.
+    pub fn joined_parts(&self) -> Vec<[usize; 2]> {
+        let joints = self.joints.iter().map(|joint| [joint.parent, joint.child]);
+        joints.chain(self.springs.iter().map(|spring| [spring.parent, spring.child])).collect()
+    }
+
     /// Returns the number of limbs.
     pub fn limbs(&self) -> usize {
         self.parts.last().map_or(0, |last| last.limb + 1)

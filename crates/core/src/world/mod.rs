@@ -1,9 +1,8 @@
 //! The physical world: stairs, surface, snake, and one [`Simulation`] that steps them.
 //!
 //! Axes: x across the stairs, y towards and up the stairs, z up. Units: metres, kilograms, seconds, radians, newton metres. The world is
-//! built on rapier3d, with every body, collider and joint inserted in a fixed order. A second engine, *lanes*, computes snakes of rigid
-//! limbs in a row (`lanes/mod.rs` explains it). It keeps its state in rapier's bodies, so that code that reads a world works with both
-//! engines. This module never uses a window, a file, a thread, a clock, or iteration in hash order.
+//! built on rapier3d, with every body, collider and joint inserted in a fixed order. A second engine, *lanes*, computes several snakes side
+//! by side (`lanes/mod.rs` explains it). It keeps its state in rapier's bodies, so that code that reads a world works with both engines. This module never uses a window, a file, a thread, a clock, or iteration in hash order.
 
 mod body;
 mod bounce;
@@ -34,7 +33,7 @@ pub use discontinuity::Discontinuity;
 pub use effort::Effort;
 pub use energy::EnergyLost;
 pub use health::{Disqualification, HealthLimits};
-pub use lanes::LanesCommon;
+pub use lanes::{LanesCommon, VectorLevel};
 pub use mount::{Mount, joint_turn};
 #[cfg(test)]
 pub use physics::TESTED_RATES;

@@ -16,10 +16,10 @@ choices! {
     pub enum PhysicsEngine {
         #[default]
         Rapier = "rapier", "rapier",
-            "The general engine rapier, for every kind of body. Its bits differ between processors of different kinds.";
+            "The general engine rapier. Its bits differ between processors of different kinds.";
         Lanes = "lanes", "lanes",
             "Many snakes side by side, one per lane of the processor's vectors: several times as fast, and with the same \
-             bits on every processor. For snakes of 2 to 12 rigid limbs in a row.";
+             bits on every processor.";
     }
 }
 

@@ -14,11 +14,17 @@ use snakes_core::evolve::Settings;
 use snakes_core::genome::Genome;
 use snakes_core::rng::{Purpose, stream};
 use snakes_core::score::{Trial, evaluate};
-use snakes_core::world::{JointTorque, PhysicsEngine, Simulation};
+use snakes_core::world::{JointTorque, LANES, PhysicsEngine, Simulation, VectorLevel};
 
 /// Results of the benchmark. Rates are medians over its rounds; ratios are medians of the ratios of each round.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BenchReport {
+    /// The engine that computed the motion.
+    pub engine: PhysicsEngine,
+    /// Number of snakes that the engine steps side by side.
+    pub lanes: usize,
+    /// Vector instructions of the engine *lanes*; `None` for rapier, whose instructions are those for which the program was built.
+    pub simd: Option<&'static str>,
     /// Number of worker threads in the measurements with many threads.
     pub threads: usize,
     /// Physics steps per wall second, all threads together.
@@ -111,7 +117,15 @@ pub fn bench(
     let median_of = |value: fn(&Round) -> f64| median(rounds.iter().map(value).collect());
     let step_s = f64::from(trial.physics.step_s());
     let many = median_of(|round| round.many);
+    let engine = trial.physics.engine;
+    let (lanes, simd) = match engine {
+        PhysicsEngine::Rapier => (1, None),
+        PhysicsEngine::Lanes => (LANES, Some(VectorLevel::in_use().name())),
+    };
     Ok(BenchReport {
+        engine,
+        lanes,
+        simd,
         threads,
         steps_per_s: many,
         sim_s_per_s: many * step_s,
@@ -195,7 +209,8 @@ mod tests {
         settings.trial.duration_s = 0.1;
         let report =
             bench(&Workload::newborns(&settings), 2, Duration::ZERO, |_| ()).expect("threads");
-        assert_eq!(report.threads, 2);
+        assert_eq!((report.threads, report.engine), (2, PhysicsEngine::Rapier));
+        assert_eq!((report.lanes, report.simd), (1, None));
         assert!(report.steps_per_s > 0.0 && report.ratio_to_bare_rapier > 0.0);
         assert!((report.sim_s_per_s * 60.0 / report.steps_per_s - 1.0).abs() < 1e-6);
     }

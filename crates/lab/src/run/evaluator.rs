@@ -244,8 +244,11 @@ impl Evaluator for LocalPool {
         let many = if side_by_side { jobs_together(jobs.len(), self.workers()) } else { 1 };
         let mut order: Vec<usize> = (0..jobs.len()).collect();
         if side_by_side {
-            // Snakes with equal numbers of limbs are stepped together.
-            order.sort_by_key(|&index| jobs[index].genome.body.segments.len());
+            // Snakes whose parts are joined alike are stepped together.
+            order.sort_by_cached_key(|&index| {
+                let Job { genome, trial } = &jobs[index];
+                trials[*trial].agent.body_plan(genome).joined_parts()
+            });
         }
         self.0.install(|| {
             order.par_chunks(many).try_for_each(|order| {

@@ -71,7 +71,7 @@ impl Study {
         }
         settings.genome.bodies.vary = info.varies_bodies;
         if settings.genome.has_creatures() {
-            // The preset's engine may only be able to simulate limbs in a row.
+            // The studies of creatures that were published are of rapier, whatever the engine of the preset.
             settings.trial.physics.engine = PhysicsEngine::Rapier;
         }
         let mut settings = with_fields(&settings, others)?;

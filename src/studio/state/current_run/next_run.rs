@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::CurrentRun;
 use crate::studio::stage::staged_champion::StagedChampion;
 use snakes_core::check::Invalid;
-use snakes_core::evolve::{RunPlan, Settings, changed_values, with_fields_and_engine};
+use snakes_core::evolve::{RunPlan, Settings, changed_values, with_fields};
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
 impl CurrentRun {
@@ -42,10 +42,10 @@ impl CurrentRun {
     }
 
     /// Sets settings of the next run at once, by their names. They also apply to a run that has not started and, from the
-    /// next generation on, to a run in progress if they may change. Also selects the engine rapier if the bodies require it.
+    /// next generation on, to a run in progress if they may change.
     pub fn set_fields(&mut self, changes: &[(&str, &str)]) -> Result<(), String> {
         let next = &self.plan_next;
-        let settings = with_fields_and_engine(&next.settings, changes)
+        let settings = with_fields(&next.settings, changes.iter().copied())
             .and_then(|settings| settings.check_start().map(|()| settings))
             .map_err(|error: Invalid| error.to_string())?;
         self.set_next_plan(RunPlan { settings, ..next.clone() })

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::studio::stage::{Show, StageMode};
 use crate::studio::state::what_if::{ChangedStage, unsuited};
-use snakes_core::evolve::{RunPlan, Settings, fields, with_fields_and_engine, world_in_words};
+use snakes_core::evolve::{RunPlan, Settings, fields, with_fields, world_in_words};
 use snakes_core::score::Trial;
 
 /// Returns the champions to show after the plan changed from `from` to `to`. The world settings that differ also change
@@ -78,7 +78,7 @@ fn taken_over(
         trial.ground = if is_as_at_first { original.ground.clone() } else { new_ground.clone() };
     }
     let settings = Settings { trial, ..to.settings.clone() };
-    with_fields_and_engine(&settings, &restored)
+    with_fields(&settings, restored)
         .map(|settings| settings.trial)
         .map_err(|error| error.to_string())
 }

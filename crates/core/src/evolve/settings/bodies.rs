@@ -1,10 +1,9 @@
 //! Checks of settings that depend on whether bodies evolve.
 
-use super::{Settings, StrategyKind, are_limbs_soft};
+use super::{Settings, StrategyKind};
 use crate::check::Invalid;
-use crate::schema::Choices;
-use crate::score::{Fitness, Trial};
-use crate::world::{PhysicsEngine, SOFTEST_M4_S2, modulus_at_pa};
+use crate::score::Fitness;
+use crate::world::{SOFTEST_M4_S2, modulus_at_pa};
 
 /// Length of the landing in addition to the longest body, in metres.
 const LANDING_ROOM_M: f32 = 2.0;
@@ -24,7 +23,6 @@ impl Settings {
             let allowed = format!("{} {state}", fitting.join(", "));
             return Err(Invalid::new("evolution.strategy", strategy, allowed));
         }
-        self.check_engine()?;
         if !varies {
             let agent = &self.trial.agent;
             return agent
@@ -56,22 +54,6 @@ impl Settings {
             return Err(Invalid::new(field, found, allowed));
         }
         Ok(())
-    }
-}
-
-impl Settings {
-    /// Checks that the physics engine can simulate the bodies of a run: *lanes* simulates only rigid limbs in a row.
-    pub(super) fn check_engine(&self) -> Result<(), Invalid> {
-        let engine = self.trial.physics.engine;
-        let are_soft = are_limbs_soft(&self.genome.bodies, &self.trial.agent);
-        let kind = match engine {
-            PhysicsEngine::Lanes if self.genome.has_creatures() => "branching bodies",
-            PhysicsEngine::Lanes if are_soft => "soft limbs",
-            _ => return Ok(()),
-        };
-        let allowed =
-            format!("rapier for {kind}, because lanes simulates only rigid limbs in a row");
-        Err(Invalid::new(Trial::ENGINE_FIELD, engine.choice().name, allowed))
     }
 }
 

@@ -3,7 +3,6 @@
 use super::Settings;
 use crate::check::Invalid;
 use crate::schema::{SettingValue, find, list, set_text, set_value};
-use crate::score::Trial;
 
 /// Returns the names of all settings with their values as text, in the order of the names: `trial.surface.friction`, `1`.
 pub fn fields(settings: &Settings) -> Vec<(String, String)> {
@@ -73,20 +72,6 @@ pub fn with_fields<'a>(
     }
     settings.check()?;
     Ok(settings)
-}
-
-/// Returns the settings with some fields changed as by [`with_fields`]. The engine becomes rapier if the present engine cannot simulate the
-/// changed bodies.
-///
-/// # Errors
-/// Fails as [`with_fields`] does.
-pub fn with_fields_and_engine(
-    settings: &Settings,
-    changes: &[(&str, &str)],
-) -> Result<Settings, Invalid> {
-    let partners = changes.iter().flat_map(|(field, text)| settings.partner_changes(field, text));
-    let engine = partners.filter(|(field, _)| *field == Trial::ENGINE_FIELD);
-    with_fields(settings, changes.iter().copied().chain(engine))
 }
 
 /// Checks that each of the fields has an effect on a run with these settings. A path that is not the name of a field, such as the path of a

@@ -21,10 +21,7 @@ mod start;
 mod strategy_kind;
 
 pub use body_search::{BodyGaSettings, BodyMapElitesSettings, BodyProtection, IslandSettings};
-pub use by_name::{
-    changed_values, check_effects, fields, with_field, with_fields, with_fields_and_engine,
-    with_value,
-};
+pub use by_name::{changed_values, check_effects, fields, with_field, with_fields, with_value};
 pub use cma_es::{CmaEsSettings, RestartKind};
 pub use creatures::CreatureGaSettings;
 pub use evolution::EvolutionSettings;

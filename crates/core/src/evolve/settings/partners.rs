@@ -1,4 +1,4 @@
-//! Compatibility of strategies with controllers, evolving bodies, physics engines and ladders.
+//! Compatibility of strategies with controllers, evolving bodies and ladders.
 //!
 //! Most strategies evolve the genes of any controller. A learner improves a policy instead, and a search of structure needs genomes that
 //! grow: each works only with certain kinds of controllers, and these kinds work with no other strategies.
@@ -6,9 +6,8 @@
 use super::{Settings, StrategyKind};
 use crate::check::Invalid;
 use crate::genome::ControllerKind;
-use crate::schema::{Choices, find, set_text};
-use crate::score::{Fitness, StairsVariation, Trial};
-use crate::world::PhysicsEngine;
+use crate::schema::Choices;
+use crate::score::{Fitness, StairsVariation};
 
 impl StrategyKind {
     /// Returns whether the strategy can improve controllers of the kind `controller`.
@@ -38,28 +37,8 @@ const BODY_CONTROLLERS: [ControllerKind; 2] = [ControllerKind::Wave, ControllerK
 
 impl Settings {
     /// Returns the further changes that keep the settings compatible after the change of `field` to `text`: of strategy, controller,
-    /// evolution of bodies, physics engine and repeated trials, as fields and texts. Empty if no further change is necessary.
+    /// evolution of bodies and repeated trials, as fields and texts. Empty if no further change is necessary.
     pub fn partner_changes(&self, field: &str, text: &str) -> Vec<(&'static str, &'static str)> {
-        let mut changes = self.partner_choices(field, text);
-        let mut changed = self.clone();
-        for (field, text) in std::iter::once((field, text)).chain(changes.iter().copied()) {
-            // A value that is not allowed is refused later, when it is applied.
-            let path = find(&changed, field);
-            if path.and_then(|path| set_text(&mut changed, &path, text)).is_err() {
-                return changes;
-            }
-        }
-        // A change of the engine itself adds no other engine: settings with an engine that cannot simulate the bodies are refused.
-        if field != Trial::ENGINE_FIELD
-            && self.check_engine().is_ok()
-            && changed.check_engine().is_err()
-        {
-            changes.push((Trial::ENGINE_FIELD, PhysicsEngine::Rapier.choice().name));
-        }
-        changes
-    }
-
-    fn partner_choices(&self, field: &str, text: &str) -> Vec<(&'static str, &'static str)> {
         let mut changes: Vec<_> = self.partner_change(field, text).into_iter().collect();
         if field == "genome.bodies.vary" {
             let varies = text == "true";
@@ -176,7 +155,6 @@ impl Settings {
 mod tests {
     use super::*;
     use crate::evolve::with_fields;
-    use crate::schema::PerPart;
 
     #[test]
     fn every_kind_of_controller_has_a_strategy_and_every_strategy_a_controller() {
@@ -221,17 +199,6 @@ mod tests {
         assert_eq!(partner(&settings, controller, "decisions"), Some((strategy, "q_learning")));
         assert_eq!(partner(&settings, controller, "reflex"), None);
         assert_eq!(partner(&settings, "trial.duration_s", "3"), None);
-        let (softness, engine) = ("trial.agent.youngs_modulus_pa", "trial.physics.engine");
-        assert_eq!(all(&settings, softness, "40000"), [], "rapier simulates soft limbs");
-        settings.trial.physics.engine = PhysicsEngine::Lanes;
-        assert_eq!(all(&settings, softness, "40000"), [(engine, "rapier")]);
-        assert_eq!(all(&settings, softness, "none"), []);
-        let creatures = all(&settings, controller, "part_neurons");
-        assert_eq!(creatures.last(), Some(&(engine, "rapier")), "{creatures:?}");
-        settings.trial.physics.engine = PhysicsEngine::Rapier;
-        settings.trial.agent.youngs_modulus_pa = Some(PerPart::All(40_000.0));
-        assert_eq!(all(&settings, engine, "lanes"), [], "it is refused");
-        settings.trial.agent.youngs_modulus_pa = None;
         settings.genome.controller = ControllerKind::Decisions;
         settings.evolution.strategy = StrategyKind::Zcs;
         assert_eq!(partner(&settings, strategy, "ga"), Some((controller, "gait")));

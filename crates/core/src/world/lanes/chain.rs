@@ -1,16 +1,14 @@
-//! One snake as the solver sees it: its boxes, joints and stairs, and the contacts of its last step.
+//! One snake as the solver sees it: its boxes, joints, springs and stairs, and the contacts of its last step.
 
 use std::sync::Arc;
 
 use super::block::Block;
 use super::contact::Contact;
+use super::joint::{Joint, JointShape, in_groups};
 use super::wide::{Wide, WideRotation};
-use crate::world::contact::{joint_coefficients, soft_contacts};
+use crate::world::contact::soft_contacts;
 use crate::world::surface::ContactLaw;
-use crate::world::{BodyPlan, Vector, WorldPlan};
-
-/// Maximum number of parts that the engine *lanes* simulates.
-pub(super) const MOST_PARTS: usize = 12;
+use crate::world::{Vector, WorldPlan};
 
 /// Greatest speed with which an error of position is corrected, as in rapier: in m/s for a contact, in rad/s for a joint beyond its limit.
 pub(super) const MOST_CORRECTION_PER_S: f32 = 3.0;
@@ -56,21 +54,6 @@ impl PartState {
     }
 }
 
-/// A universal joint between the rear face of a part and the front face of another one.
-#[derive(Debug, Clone)]
-pub(super) struct Joint {
-    /// Indices of the two connected parts, the front one first.
-    pub parts: [usize; 2],
-    /// Sine and cosine of half of the greatest bend and twist; `None` where the axis turns freely.
-    pub half_limits: [Option<[f32; 2]>; 2],
-    /// Damping that the solver integrates, in N·m·s/rad: a share of the joint's damping.
-    pub damping_nms: f32,
-    /// Share of a position error of the joint that is corrected, per second.
-    pub correction_per_s: f32,
-    /// Compliance of the joint, as a share of a row's own inverse mass.
-    pub compliance: f32,
-}
-
 /// Parameters of a contact: friction, bounce and softness.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law {
@@ -101,7 +84,7 @@ pub(super) struct Solid {
 }
 
 /// Settings and sizes that all snakes which are stepped side by side have in common.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LanesCommon {
     /// Length of a physics step, in s.
     pub step_s: f32,
@@ -111,10 +94,10 @@ pub struct LanesCommon {
     pub iterations: u32,
     /// Number of parts of a snake.
     pub parts: usize,
-    /// Number of joints of a snake.
-    pub joints: usize,
-    /// Whether a contact or a joint is a spring. If one is, each pass solves friction, and no pass takes the corrections of positions out
-    /// of the velocities again.
+    /// The joints and springs of a snake, in the order in which they are solved.
+    pub joints: Arc<[JointShape]>,
+    /// Whether a contact or a universal joint is a spring. If one is, each pass solves friction, and no pass takes the corrections of
+    /// positions out of the velocities again.
     pub has_springs: bool,
 }
 
@@ -123,6 +106,7 @@ pub struct LanesCommon {
 pub(crate) struct Chain {
     pub(super) common: LanesCommon,
     pub(super) parts: Vec<ChainPart>,
+    /// Joints and springs, in the order in which they are solved.
     pub(super) joints: Vec<Joint>,
     /// Pairs of parts that can touch, the front one first.
     pub(super) pairs: Vec<[usize; 2]>,
@@ -136,25 +120,12 @@ pub(crate) struct Chain {
     pub contacts: Vec<Contact>,
     /// Contacts of the step before the last one, whose memory is used again.
     pub(super) earlier: Vec<Contact>,
-}
-
-impl BodyPlan {
-    /// Returns the reason why the engine *lanes* cannot simulate this body, in words that follow "because "; `None` if it can.
-    pub fn obstacle_in_lanes(&self) -> Option<&'static str> {
-        if !self.springs.is_empty() {
-            Some("its limbs are soft")
-        } else if self.is_branching() {
-            Some("its body branches")
-        } else if self.parts.len() > MOST_PARTS {
-            Some("it has more than 12 limbs")
-        } else {
-            None
-        }
-    }
+    /// Boxes of the parts, and half the sizes of the axis-aligned boxes around them. The memory is reused in each step.
+    pub(super) blocks: Vec<(Block, Vector)>,
 }
 
 impl Chain {
-    /// Builds the snake of a plan whose body has no [obstacle](BodyPlan::obstacle_in_lanes).
+    /// Builds the snake of a plan.
     pub fn new(plan: &WorldPlan) -> Self {
         let WorldPlan { body, physics, skin, .. } = plan;
         let parts: Vec<ChainPart> = body
@@ -168,17 +139,11 @@ impl Chain {
             })
             .collect();
         let joints = body.joints.iter().map(|joint| {
-            let [front_kg, rear_kg] = [joint.parent, joint.child].map(|part| parts[part].mass_kg);
-            let soft =
-                joint_coefficients(joint.cfm_m_s_per_n, physics.substep_s(), front_kg, rear_kg);
-            Joint {
-                parts: [joint.parent, joint.child],
-                half_limits: [joint.bend_limit_rad, joint.twist_limit_rad].map(half_limit),
-                damping_nms: physics.joint_damping_in_solver() * joint.damping_nms_per_rad,
-                correction_per_s: soft.erp_inv_dt(physics.substep_s()),
-                compliance: soft.cfm_coeff(physics.substep_s()),
-            }
+            let masses_kg = [joint.parent, joint.child].map(|part| parts[part].mass_kg);
+            Joint::universal(joint, physics, masses_kg)
         });
+        let springs = body.springs.iter().map(|spring| Joint::spring(spring, physics.substep_s()));
+        let joints = in_groups(joints.chain(springs).collect(), parts.len());
         let soft = soft_contacts(plan);
         let law = |contact: ContactLaw, friction: f32, bounce: f32| {
             let spring = soft.of(contact.softness, physics);
@@ -195,11 +160,12 @@ impl Chain {
             ground: law(soft.laws.ground, plan.ground.friction, plan.ground.bounce),
             limbs: law(soft.laws.limbs, skin.friction, skin.bounce),
         };
+        // Parts of one soft limb pass through each other, and so do parts that a joint connects, and limbs of a contact-free pair.
         let touch = |front: usize, rear: usize| {
-            !body.joints.iter().any(|joint| [joint.parent, joint.child] == [front, rear])
-                && !body
-                    .contact_free_pairs
-                    .contains(&[body.parts[front].limb, body.parts[rear].limb])
+            let limbs = [front, rear].map(|part| body.parts[part].limb);
+            limbs[0] != limbs[1]
+                && !joints.iter().any(|joint| joint.parts == [front, rear])
+                && !body.contact_free_pairs.contains(&limbs)
         };
         let count = parts.len();
         let pairs = (0..count).flat_map(|front| (front + 1..count).map(move |rear| [front, rear]));
@@ -209,24 +175,25 @@ impl Chain {
                 substeps: physics.substeps.max(1),
                 iterations: physics.iterations,
                 parts: count,
-                joints: body.joints.len(),
+                joints: joints.iter().map(Joint::shape).collect(),
                 has_springs: soft.laws.has_springs(),
             },
-            joints: joints.collect(),
             pairs: pairs.filter(|[front, rear]| touch(*front, *rear)).collect(),
+            joints,
             solids: solids(plan),
             laws,
             gravity: Vector::ZERO,
             state: vec![PartState::default(); count],
             contacts: Vec::new(),
             earlier: Vec::new(),
+            blocks: Vec::with_capacity(count),
             parts,
         }
     }
 
     /// Returns the settings and sizes that all lanes of a solver must have in common.
     pub fn common(&self) -> LanesCommon {
-        self.common
+        self.common.clone()
     }
 
     /// Returns the mass of a part, in kg, and its inertia about its own axes, in kg·m²; `None` if the snake has no such part.
@@ -257,14 +224,6 @@ impl Chain {
     }
 }
 
-/// Returns the sine and cosine of half a limit; `None` for a limit of half a turn or more, which no angle exceeds.
-fn half_limit(limit_rad: f32) -> Option<[f32; 2]> {
-    (limit_rad < std::f32::consts::PI).then(|| {
-        let (sin, cos) = libm::sincosf(limit_rad / 2.0);
-        [sin, cos]
-    })
-}
-
 fn solids(plan: &WorldPlan) -> Arc<[Solid]> {
     let solids = plan.stairs.solids().into_iter().map(|solid| {
         let state = PartState {
@@ -277,4 +236,49 @@ fn solids(plan: &WorldPlan) -> Arc<[Solid]> {
         Solid { low: block.centre - reach_m, high: block.centre + reach_m, block }
     });
     solids.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::save::library::shipped_champions;
+    use crate::world::{PhysicsEngine, Simulation};
+
+    /// The plans of all built-in champions: rigid limbs in a row, some of them short, creatures and soft snakes.
+    fn plans() -> impl Iterator<Item = (&'static str, WorldPlan)> {
+        shipped_champions().into_iter().map(|(name, loaded)| {
+            let mut plan = loaded.champion.trial.world_plan(&loaded.champion.genome);
+            plan.physics.engine = PhysicsEngine::Rapier;
+            (name, plan)
+        })
+    }
+
+    #[test]
+    fn the_same_parts_can_touch_as_in_rapier() {
+        let mut soft = 0;
+        for (name, plan) in plans() {
+            let simulation = Simulation::new(&plan);
+            let physics = simulation.physics();
+            let groups = simulation.parts().iter().map(|&part| {
+                physics.colliders[physics.bodies[part].colliders()[0]].collision_groups()
+            });
+            let groups: Vec<_> = groups.collect();
+            let joined = |pair: [usize; 2]| {
+                let bodies = pair.map(|part| simulation.parts()[part]);
+                let mut joints = physics.impulse_joints.iter();
+                joints
+                    .any(|(_, of)| !of.data.contacts_enabled && [of.body1(), of.body2()] == bodies)
+            };
+            let count = groups.len();
+            let pairs =
+                (0..count).flat_map(|front| (front + 1..count).map(move |rear| [front, rear]));
+            let expected: Vec<[usize; 2]> = pairs
+                .filter(|[front, rear]| groups[*front].test(groups[*rear]))
+                .filter(|pair| !joined(*pair))
+                .collect();
+            assert_eq!(Chain::new(&plan).pairs, expected, "{name}");
+            soft += usize::from(!plan.body.springs.is_empty());
+        }
+        assert!(soft >= 3, "{soft} soft snakes");
+    }
 }

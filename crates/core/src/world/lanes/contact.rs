@@ -1,7 +1,7 @@
 //! Finds the contacts of a snake at the beginning of a step, and gives each contact its initial impulses.
 
 use super::block::{Block, of_blocks, on_ground};
-use super::chain::{Chain, Law, MOST_PARTS};
+use super::chain::{Chain, Law};
 use super::shared_points::{MOST_POINTS, SharedPoints};
 use crate::world::Vector;
 use crate::world::contact::SlippingPatch;
@@ -94,30 +94,25 @@ impl Chain {
         let mut contacts = std::mem::take(&mut self.contacts);
         contacts.clear();
         let mut found = SharedPoints::default();
-        let mut blocks = [None; MOST_PARTS];
-        for (part, slot) in blocks.iter_mut().enumerate().take(self.parts.len()) {
+        let mut blocks = std::mem::take(&mut self.blocks);
+        blocks.clear();
+        blocks.extend((0..self.parts.len()).map(|part| {
             let block = self.block(part);
-            *slot = Some((block, block.reach_m()));
-        }
+            (block, block.reach_m())
+        }));
         for &[front, rear] in &self.pairs {
-            let (Some((first, of_first)), Some((second, of_second))) =
-                (blocks[front], blocks[rear])
-            else {
-                continue;
-            };
+            let ((first, of_first), (second, of_second)) = (&blocks[front], &blocks[rear]);
             let apart = (first.centre - second.centre).abs();
-            if (apart - (of_first + of_second)).max_element() > WITHIN_M {
+            if (apart - (*of_first + *of_second)).max_element() > WITHIN_M {
                 continue;
             }
-            if of_blocks(&first, &second, WITHIN_M, &mut found) {
+            if of_blocks(first, second, WITHIN_M, &mut found) {
                 let (other, law) = (Touching::Part(front), self.laws.limbs);
-                let bodies =
-                    Bodies { part: rear, other, first: Some(&first), second: &second, law };
+                let bodies = Bodies { part: rear, other, first: Some(first), second, law };
                 self.add_contact(&bodies, &found, &mut contacts);
             }
         }
-        for (part, block) in blocks.iter().enumerate() {
-            let Some((block, reach_m)) = block else { continue };
+        for (part, (block, reach_m)) in blocks.iter().enumerate() {
             let (low, high) = (block.centre - *reach_m, block.centre + *reach_m);
             if low.z <= WITHIN_M && on_ground(block, WITHIN_M, &mut found) {
                 let (other, law) = (Touching::Ground, self.laws.ground);
@@ -143,6 +138,7 @@ impl Chain {
             }
         }
         self.contacts = contacts;
+        self.blocks = blocks;
     }
 
     /// Adds the contact of two bodies, with the impulses that its points had in the step before. Adds nothing if no point is near enough.

@@ -191,7 +191,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// Builds the rows for a step.
-    #[inline(never)]
+    #[inline(always)]
     pub fn build(&mut self, parts: &[WidePart<N>]) {
         let (part, other) = self.ends(parts);
         let normal = self.normal;
@@ -260,7 +260,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// Prepares a substep, which begins with the impulses of the substep before.
-    #[inline(never)]
+    #[inline(always)]
     pub fn begin_substep(
         &mut self,
         parts: &mut [WidePart<N>],
@@ -295,7 +295,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// Recomputes the gaps at the present poses, for the last pass, which corrects no positions.
-    #[inline(never)]
+    #[inline(always)]
     pub fn end_substep(&mut self, parts: &[WidePart<N>], per_substep: Wide<N>) {
         for index in 0..self.count {
             let distance_m = self.distance_m(parts, &self.points[index]);
@@ -344,7 +344,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// Makes one pass over the rows of the points along the normal.
-    #[inline(never)]
+    #[inline(always)]
     pub fn solve_normal(&mut self, parts: &mut [WidePart<N>]) {
         for index in 0..self.count {
             let point = &mut self.points[index];
@@ -363,7 +363,7 @@ impl<const N: usize> WideContact<N> {
     }
 
     /// Makes one pass over the friction: first against a twist on the spot, then along the surface.
-    #[inline(never)]
+    #[inline(always)]
     pub fn solve_friction(&mut self, parts: &mut [WidePart<N>]) {
         let (mut most, mut most_twist) = (Wide::ZERO, Wide::ZERO);
         for point in &self.points[..self.count] {

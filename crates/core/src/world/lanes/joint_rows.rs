@@ -1,9 +1,11 @@
-//! The constraint rows of the universal joints. Each row has a relative velocity of two parts that it does not allow, and the impulse that
-//! prevents this velocity.
+//! The constraint rows of the universal joints and of the springs in soft limbs. Each row has a relative velocity of two parts that it does
+//! not allow, and the impulse that prevents this velocity.
 
+use super::angle::{beyond, of_sine};
 use super::chain::{Chain, LanesCommon, MOST_CORRECTION_PER_S};
+use super::joint::Hold;
 use super::part::{WidePart, both};
-use super::wide::{Wide, WideVector};
+use super::wide::{Wide, WideRotation, WideVector};
 
 /// A row that only concerns rotations. Its axis is the same for both parts.
 #[derive(Debug, Clone, Copy)]
@@ -32,11 +34,18 @@ struct JointRow<const N: usize> {
     range: [Wide<N>; 2],
 }
 
-/// One universal joint per lane.
+/// One universal joint per lane, or one spring in each lane. A spring has the same rows, but the two of the motors and the lock yield: each
+/// is elastic about one axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct WideJoint<const N: usize> {
     /// Indices of the two connected parts, the front one first.
     pub parts: [usize; 2],
+    /// Whether this is a spring, in all lanes.
+    is_spring: bool,
+    /// Place and rotation of the joint on the front part, if they are its own in all lanes.
+    mount: Option<(WideVector<N>, WideRotation<N>)>,
+    /// Share of the angle that a spring takes back per second, and its compliance, about each axis.
+    elastic: [[Wide<N>; 2]; 3],
     /// Distances along y from the parts' centres to the joint's anchors, in metres: backwards from the front part, forwards from the rear
     /// part.
     anchors_m: [Wide<N>; 2],
@@ -161,53 +170,12 @@ impl<const N: usize> JointRow<N> {
     }
 }
 
-/// Returns how far a joint is beyond a limit about one axis, in radians, from the imaginary part x of its rotation about the axis and the
-/// real part w; 0 within the limits, and negative beyond the lower limit. `None` if no lane is beyond a limit. The angle is
-/// `2 atan(x / w)`. The addition theorem subtracts half the limit from half the angle, and the sign of the result tells whether the limit
-/// is exceeded, without trigonometric functions.
-#[inline(always)]
-fn beyond<const N: usize>(x: Wide<N>, w: Wide<N>, [sin, cos]: [Wide<N>; 2]) -> Option<Wide<N>> {
-    let (over, under) = (x * cos - w * sin, -(x * cos + w * sin));
-    if !over.max(under).any_greater(Wide::ZERO) {
-        return None;
-    }
-    let two = Wide::all(2.0);
-    let above = arc(over, w * cos + x * sin) * two;
-    let below = arc(under, w * cos - x * sin) * two;
-    Some(above - below)
-}
-
-/// Returns the angle whose sine and cosine have this ratio if the sine is positive, else 0. With a positive sine, the cosine is not
-/// negative, because neither a half angle nor half a limit is more than a quarter of a turn.
-#[inline(always)]
-fn arc<const N: usize>(sin: Wide<N>, cos: Wide<N>) -> Wide<N> {
-    let sin = sin.max(Wide::ZERO);
-    let smaller = Wide::where_less(sin, cos, sin, cos);
-    let greater = Wide::where_less(sin, cos, cos, sin);
-    let ratio = smaller / greater.max(Wide::all(1.0e-12));
-    let square = ratio * ratio;
-    // Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.49: within 2e-8 of the arc tangent for arguments up to 1.
-    let mut sum = Wide::all(0.002_866_225_7);
-    for coefficient in [
-        -0.016_165_737,
-        0.042_909_614,
-        -0.075_289_64,
-        0.106_562_64,
-        -0.142_089,
-        0.199_935_51,
-        -0.333_331_45,
-        1.0,
-    ] {
-        sum = sum * square + Wide::all(coefficient);
-    }
-    let angle = ratio * sum;
-    let angle = Wide::where_less(sin, cos, angle, Wide::all(std::f32::consts::FRAC_PI_2) - angle);
-    Wide::where_less(Wide::ZERO, sin, angle, Wide::ZERO)
-}
-
 impl<const N: usize> WideJoint<N> {
     pub const EMPTY: Self = Self {
         parts: [0; 2],
+        is_spring: false,
+        mount: None,
+        elastic: [[Wide::ZERO; 2]; 3],
         anchors_m: [Wide::ZERO; 2],
         damping: Wide::ZERO,
         is_damped: Wide::ZERO,
@@ -221,12 +189,29 @@ impl<const N: usize> WideJoint<N> {
         is_limited: [false; 2],
     };
 
-    /// Loads joint number `index` of a snake into a lane.
+    /// Loads joint or spring number `index` of a snake into a lane.
     pub fn load(&mut self, lane: usize, chain: &Chain, index: usize) {
         let joint = &chain.joints[index];
         let substep_s = chain.common.step_s / chain.common.substeps as f32;
-        // The snakes of all lanes have the same number of parts, so this joint connects the same two parts in every lane.
+        // The snakes of all lanes have joints of the same shapes, so this joint connects the same two parts in the same way in every lane.
         self.parts = joint.parts;
+        (self.is_spring, self.mount) = match joint.hold {
+            Hold::Straight => (false, None),
+            Hold::Mounted { at_m, turn } => {
+                let (mut place_m, mut rotation) =
+                    self.mount.unwrap_or((WideVector::ZERO, WideRotation::IDENTITY));
+                place_m.set(lane, at_m);
+                rotation.set(lane, turn);
+                (false, Some((place_m, rotation)))
+            }
+            Hold::Spring(elastic) => {
+                for (wide, values) in self.elastic.iter_mut().zip(elastic) {
+                    wide[0].0[lane] = values[0];
+                    wide[1].0[lane] = values[1];
+                }
+                (true, None)
+            }
+        };
         self.anchors_m[0].0[lane] = -chain.parts[joint.parts[0]].half_m.y;
         self.anchors_m[1].0[lane] = chain.parts[joint.parts[1]].half_m.y;
         let is_damped = joint.damping_nms > 0.0;
@@ -243,19 +228,29 @@ impl<const N: usize> WideJoint<N> {
     }
 
     /// Builds the rows for the present poses. All impulses begin at zero, not at those of the substep before.
-    #[inline(never)]
-    pub fn build(&mut self, front: &WidePart<N>, rear: &WidePart<N>, common: &LanesCommon) {
-        let ends = [front, rear];
-        let levers = [front.axes[1] * self.anchors_m[0], rear.axes[1] * self.anchors_m[1]];
+    #[inline(always)]
+    pub fn build(&mut self, parts: &[WidePart<N>], common: &LanesCommon) {
+        let ends = self.parts.map(|part| &parts[part]);
+        let [front, rear] = ends;
+        let (mounted_turn, mounted_axes);
+        let (of_front, a, frame) = match &self.mount {
+            Some((place_m, rotation)) => {
+                mounted_turn = front.turn.product(*rotation);
+                mounted_axes = mounted_turn.axes();
+                (place_m.out_of_frame(&front.axes), &mounted_turn, &mounted_axes)
+            }
+            None => (front.axes[1] * self.anchors_m[0], &front.turn, &front.axes),
+        };
+        let levers = [of_front, rear.axes[1] * self.anchors_m[1]];
         let gap = (rear.at + levers[1]) - (front.at + levers[0]);
-        for axis in 0..2 {
-            let (row, inverse_mass) = TurnRow::about(front.axes[axis], ends);
+        for (motor, axis) in self.motors.iter_mut().zip(frame) {
+            let (row, inverse_mass) = TurnRow::about(*axis, ends);
             let inverse = self.is_damped / (inverse_mass + self.damping);
-            self.motors[axis] = TurnRow { inverse, compliance: self.damping, ..row };
+            *motor = TurnRow { inverse, compliance: self.damping, ..row };
         }
 
-        // The rotation of the rear part as seen from the front part, with a positive real part.
-        let (a, b) = (&front.turn, &rear.turn);
+        // The rotation of the rear part as seen from the joint's frame on the front part, with a positive real part.
+        let b = &rear.turn;
         let w = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
         let side = Wide::where_less(w, Wide::ZERO, -Wide::ONE, Wide::ONE);
         let x = (a.w * b.x - a.x * b.w - a.y * b.z + a.z * b.y) * side;
@@ -276,16 +271,20 @@ impl<const N: usize> WideJoint<N> {
         lock.inverse = (lock_mass + lock.compliance).inverse();
         lock.bias = z * self.correction_per_s;
         self.lock = lock;
+        if self.is_spring {
+            self.build_spring(frame, ends, [x, y, z]);
+        }
 
         let inverse_kg = front.inverse_kg + rear.inverse_kg;
-        for axis in 0..3 {
-            let direction = front.axes[axis];
+        for (row, direction) in self.anchors.iter_mut().zip(frame) {
+            let direction = *direction;
             let axes = [levers[0].cross(direction), levers[1].cross(direction)];
             let by_inertia = [front.inverse_inertia.of(axes[0]), rear.inverse_inertia.of(axes[1])];
             let bias = direction.dot(gap) * self.correction_per_s;
-            let row = &mut self.anchors[axis];
             *row = JointRow { direction, axes, by_inertia, bias, ..JointRow::EMPTY };
-            row.take_out_turn(&self.lock, lock_inverse);
+            if !self.is_spring {
+                row.take_out_turn(&self.lock, lock_inverse);
+            }
         }
         // Modified Gram-Schmidt makes each row independent of those before it, so that one pass solves them all.
         let mut inverses = [Wide::ZERO; 3];
@@ -310,7 +309,7 @@ impl<const N: usize> WideJoint<N> {
             let bias = beyond * self.correction_per_s;
             let most = Wide::all(MOST_CORRECTION_PER_S);
             let bias = if common.has_springs { bias } else { bias.max(-most).min(most) };
-            let direction = front.axes[axis];
+            let direction = frame[axis];
             let by_inertia =
                 [front.inverse_inertia.of(direction), rear.inverse_inertia.of(direction)];
             let row = &mut self.limits[axis];
@@ -326,16 +325,36 @@ impl<const N: usize> WideJoint<N> {
         }
     }
 
-    /// Makes one pass over the rows, with or without the correction of positions.
-    #[inline(never)]
+    /// Replaces the rows of the motors and the lock by those of a spring, which are elastic about the axes of its frame. `sines` is the
+    /// imaginary part of the spring's rotation.
+    #[inline(always)]
+    fn build_spring(
+        &mut self,
+        frame: &[WideVector<N>; 3],
+        ends: [&WidePart<N>; 2],
+        sines: [Wide<N>; 3],
+    ) {
+        let [x, y] = &mut self.motors;
+        for (axis, of_axis) in [x, y, &mut self.lock].into_iter().enumerate() {
+            let [correction_per_s, compliance] = self.elastic[axis];
+            let (row, inverse_mass) = TurnRow::about(frame[axis], ends);
+            let inverse = (inverse_mass + compliance).inverse();
+            let bias = of_sine(sines[axis]) * correction_per_s;
+            *of_axis = TurnRow { inverse, compliance, bias, ..row };
+        }
+    }
+
+    /// Makes one pass over the rows, with or without the correction of positions. A spring acts in every pass.
+    #[inline(always)]
     pub fn solve(&mut self, parts: &mut [WidePart<N>], is_biased: bool) {
         let [front, rear] = self.parts;
         let Some((front, rear)) = both(parts, front, rear) else { return };
         let bias = |of: Wide<N>| if is_biased { of } else { Wide::ZERO };
         for motor in &mut self.motors {
-            motor.solve(front, rear, Wide::ZERO);
+            let of_motor = motor.bias;
+            motor.solve(front, rear, of_motor);
         }
-        let of_lock = bias(self.lock.bias);
+        let of_lock = if self.is_spring { self.lock.bias } else { bias(self.lock.bias) };
         self.lock.solve(front, rear, of_lock);
         for row in &mut self.anchors {
             let of_row = bias(row.bias);
@@ -346,38 +365,6 @@ impl<const N: usize> WideJoint<N> {
                 let of_row = bias(row.bias);
                 row.solve_in_range(front, rear, of_row);
             }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_way_beyond_a_limit_is_the_angle_minus_the_limit() {
-        for limit_rad in [0.0_f32, 0.3, 1.0, 2.9, 3.1] {
-            let (sin, cos) = libm::sincosf(limit_rad / 2.0);
-            for number in -62..=62_i16 {
-                let angle_rad = f32::from(number) * 0.05;
-                let (x, w) = libm::sincosf(angle_rad / 2.0);
-                let found = beyond(Wide([x]), Wide([w]), [Wide([sin]), Wide([cos])]);
-                let expected = if angle_rad.abs() > limit_rad {
-                    angle_rad - limit_rad.copysign(angle_rad)
-                } else {
-                    0.0
-                };
-                let found = found.map_or(0.0, |found| found.0[0]);
-                assert!((found - expected).abs() < 1.0e-5, "{angle_rad} {limit_rad}: {found}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_joint_without_a_limit_is_never_beyond_it() {
-        for number in -62..=62_i16 {
-            let (x, w) = libm::sincosf(f32::from(number) * 0.025);
-            assert!(beyond(Wide([x]), Wide([w]), [Wide([1.0]), Wide([0.0])]).is_none());
         }
     }
 }

@@ -59,11 +59,7 @@ impl<const N: usize> WidePart<N> {
     pub fn load(&mut self, lane: usize, chain: &Chain, index: usize) {
         let (part, state) = (&chain.parts[index], &chain.state[index]);
         self.at.set(lane, state.at);
-        let [x, y, z, w] = state.turn;
-        self.turn.x.0[lane] = x;
-        self.turn.y.0[lane] = y;
-        self.turn.z.0[lane] = z;
-        self.turn.w.0[lane] = w;
+        self.turn.set(lane, state.turn);
         self.linear.set(lane, state.linear);
         self.angular.set(lane, state.angular);
         let moves = if state.is_held { 0.0 } else { 1.0 };

@@ -1,21 +1,20 @@
 //! Steps of several snakes side by side. The documentation of the module `lanes` explains the method.
 
+use fearless_simd::{Simd, dispatch};
+
+use super::VectorLevel;
 use super::chain::{Chain, LanesCommon};
 use super::contact::Touching;
 use super::contact_rows::WideContact;
 use super::joint_rows::WideJoint;
+use super::level::BASELINE;
 use super::part::{MOST_TURN_RAD, WidePart};
 use super::wide::Wide;
-
-/// Returns the order in which the joints are solved, as in rapier: first every second joint, which share no parts, and then the joints
-/// between them.
-fn alternating(joints: usize) -> impl Iterator<Item = usize> {
-    (0..joints).step_by(2).chain((1..joints).step_by(2))
-}
 
 /// Solver that steps up to `N` snakes side by side. It holds working memory only.
 #[derive(Debug, Clone)]
 pub(crate) struct LaneSolver<const N: usize> {
+    level: VectorLevel,
     parts: Vec<WidePart<N>>,
     joints: Vec<WideJoint<N>>,
     /// Contacts of all lanes. The first `contacts_used` belong to this step.
@@ -23,38 +22,26 @@ pub(crate) struct LaneSolver<const N: usize> {
     contacts_used: usize,
 }
 
-impl<const N: usize> Default for LaneSolver<N> {
-    fn default() -> Self {
-        Self { parts: Vec::new(), joints: Vec::new(), contacts: Vec::new(), contacts_used: 0 }
-    }
-}
-
 impl<const N: usize> LaneSolver<N> {
+    /// Makes a solver that computes with these vector instructions.
+    pub fn at(level: VectorLevel) -> Self {
+        let (parts, joints, contacts) = (Vec::new(), Vec::new(), Vec::new());
+        Self { level, parts, joints, contacts, contacts_used: 0 }
+    }
+
     /// Advances up to `N` snakes by one step, without their bounces. All of them have the same [`LanesCommon`]. Snakes beyond `N` are not
     /// advanced.
     pub fn advance(&mut self, chains: &mut [&mut Chain]) {
         let used = chains.len().min(N);
         let chains = &mut chains[..used];
-        let Some(common) = chains.first().map(|chain| chain.common) else { return };
+        let Some(common) = chains.first().map(|chain| chain.common.clone()) else { return };
         for chain in chains.iter_mut() {
             chain.find_contacts();
         }
         self.load(&common, chains);
-        let substep_s = common.step_s / common.substeps as f32;
-        let (substep, per_substep) = (Wide::all(substep_s), Wide::all(1.0 / substep_s));
-        let most_rad_s = MOST_TURN_RAD * (1.0 / common.step_s);
-        for part in &mut self.parts {
-            part.begin_step(substep);
-        }
-        for contact in &mut self.contacts[..self.contacts_used] {
-            contact.build(&self.parts);
-        }
-        for _ in 0..common.substeps {
-            self.substep(&common, substep, per_substep, most_rad_s);
-        }
-        for part in &mut self.parts {
-            part.end_step();
-        }
+        // A single lane gains nothing from vector instructions.
+        let level = if N == 1 { BASELINE } else { self.level.0 };
+        dispatch!(level, simd => self.step(simd, &common));
         for (lane, chain) in chains.iter_mut().enumerate() {
             for (index, part) in self.parts.iter().enumerate() {
                 part.store(lane, chain, index);
@@ -68,7 +55,7 @@ impl<const N: usize> LaneSolver<N> {
     /// Loads the snakes into the lanes. A lane without a snake gets a copy of the first one.
     fn load(&mut self, common: &LanesCommon, chains: &[&mut Chain]) {
         self.parts.resize(common.parts, WidePart::EMPTY);
-        self.joints.resize(common.joints, WideJoint::EMPTY);
+        self.joints.resize(common.joints.len(), WideJoint::EMPTY);
         let of_lane = |lane: usize| chains.get(lane).unwrap_or(&chains[0]);
         for lane in 0..N {
             let chain = of_lane(lane);
@@ -125,50 +112,102 @@ impl<const N: usize> LaneSolver<N> {
         is_begun
     }
 
-    fn substep(
-        &mut self,
-        common: &LanesCommon,
-        substep: Wide<N>,
-        per_substep: Wide<N>,
-        most_rad_s: f32,
-    ) {
-        let Self { parts, joints, contacts, contacts_used } = self;
+    /// Computes the step of the loaded snakes. It is compiled once for each level of vector instructions, and so are the closures that it
+    /// gives to `vectorize`. Everything within them is inlined, because a function of its own would have the instructions of the weakest
+    /// level.
+    #[inline(always)]
+    fn step<S: Simd>(&mut self, simd: S, common: &LanesCommon) {
+        let substep_s = common.step_s / common.substeps as f32;
+        let (substep, per_substep) = (Wide::all(substep_s), Wide::all(1.0 / substep_s));
+        let most_rad_s = MOST_TURN_RAD * (1.0 / common.step_s);
+        let Self { parts, joints, contacts, contacts_used, .. } = self;
         let contacts = &mut contacts[..*contacts_used];
         for part in parts.iter_mut() {
-            part.accelerate(substep);
-        }
-        for joint in joints.iter_mut() {
-            let [front, rear] = joint.parts;
-            joint.build(&parts[front], &parts[rear], common);
+            part.begin_step(substep);
         }
         for contact in contacts.iter_mut() {
-            contact.begin_substep(parts, common, per_substep);
+            simd.vectorize(
+                #[inline(always)]
+                || contact.build(parts),
+            );
         }
-        for _ in 0..common.iterations {
-            for index in alternating(joints.len()) {
-                joints[index].solve(parts, true);
+        for _ in 0..common.substeps {
+            for part in parts.iter_mut() {
+                part.accelerate(substep);
+            }
+            for joint in joints.iter_mut() {
+                simd.vectorize(
+                    #[inline(always)]
+                    || joint.build(parts, common),
+                );
             }
             for contact in contacts.iter_mut() {
-                contact.solve_normal(parts);
-                if common.has_springs {
-                    contact.solve_friction(parts);
+                simd.vectorize(
+                    #[inline(always)]
+                    || contact.begin_substep(parts, common, per_substep),
+                );
+            }
+            for _ in 0..common.iterations {
+                solve_joints(simd, joints, parts, true);
+                for contact in contacts.iter_mut() {
+                    solve_contact(simd, contact, parts, common.has_springs);
                 }
+            }
+            for part in parts.iter_mut() {
+                part.advance(substep, most_rad_s);
+            }
+            if common.has_springs {
+                continue;
+            }
+            // The last pass is without corrections of positions, because these must not become velocities.
+            solve_joints(simd, joints, parts, false);
+            for contact in contacts.iter_mut() {
+                simd.vectorize(
+                    #[inline(always)]
+                    || contact.end_substep(parts, per_substep),
+                );
+                solve_contact(simd, contact, parts, true);
             }
         }
         for part in parts.iter_mut() {
-            part.advance(substep, most_rad_s);
-        }
-        if common.has_springs {
-            return;
-        }
-        // The last pass is without corrections of positions, because these must not become velocities.
-        for index in alternating(joints.len()) {
-            joints[index].solve(parts, false);
-        }
-        for contact in contacts.iter_mut() {
-            contact.end_substep(parts, per_substep);
-            contact.solve_normal(parts);
-            contact.solve_friction(parts);
+            part.end_step();
         }
     }
+}
+
+/// Makes one pass over the rows of all joints, with or without the correction of positions.
+#[inline(always)]
+fn solve_joints<S: Simd, const N: usize>(
+    simd: S,
+    joints: &mut [WideJoint<N>],
+    parts: &mut [WidePart<N>],
+    is_biased: bool,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for joint in joints.iter_mut() {
+                joint.solve(parts, is_biased);
+            }
+        },
+    );
+}
+
+/// Makes one pass over the rows of a contact, with or without its friction.
+#[inline(always)]
+fn solve_contact<S: Simd, const N: usize>(
+    simd: S,
+    contact: &mut WideContact<N>,
+    parts: &mut [WidePart<N>],
+    has_friction: bool,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            contact.solve_normal(parts);
+            if has_friction {
+                contact.solve_friction(parts);
+            }
+        },
+    );
 }

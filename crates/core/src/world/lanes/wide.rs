@@ -277,6 +277,27 @@ impl<const N: usize> WideRotation<N> {
         ]
     }
 
+    /// Sets the rotation of one lane to a quaternion: x, y, z and w.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, [x, y, z, w]: [f32; 4]) {
+        self.x.0[lane] = x;
+        self.y.0[lane] = y;
+        self.z.0[lane] = z;
+        self.w.0[lane] = w;
+    }
+
+    /// Returns the product of two rotations: `second` acts first, and this one after it.
+    #[inline(always)]
+    pub fn product(self, second: Self) -> Self {
+        let (a, b) = (self, second);
+        Self {
+            x: a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+            y: a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+            z: a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+            w: a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+        }
+    }
+
     /// Applies a small rotation at this angular velocity for `step_s` after the present rotation. The result is linearised and normalised.
     #[inline(always)]
     pub fn turned(self, angular: WideVector<N>, step_s: Wide<N>) -> Self {

@@ -64,7 +64,8 @@ impl Simulation {
         }
         let mut joints_j = 0.0;
         for joint in &self.body.joints {
-            let to_joint = joint.axes(self.turns_before[joint.parent].rotation).inverse();
+            let to_joint =
+                self.joint_axes(joint, self.turns_before[joint.parent].rotation).inverse();
             let [first, mean, last] = std::array::from_fn(|moment| {
                 self.turned(to_joint, turns[joint.child][moment] - turns[joint.parent][moment])
             });
@@ -82,7 +83,8 @@ impl Simulation {
         let substep_s = self.substep_s();
         if self.lanes.is_some() {
             let parts = 0..self.parts.len();
-            return parts.map(|part| self.energy_in_lanes_j(part, substep_s)).sum();
+            let energies_j = parts.map(|part| self.energy_in_lanes_j(part, substep_s));
+            return energies_j.sum::<f64>() + self.springs_j();
         }
         let bodies = self.parts.iter().map(|&limb| &self.physics.bodies[limb]);
         let energies_j = bodies.map(|body| {
@@ -97,7 +99,7 @@ impl Simulation {
     fn springs_j(&self) -> f64 {
         let turn = |part: usize| *self.physics.bodies[self.parts[part]].rotation();
         let energies_j = self.body.springs.iter().map(|spring| {
-            let between = turn(spring.parent).inverse() * turn(spring.child);
+            let between = self.product(turn(spring.parent).inverse(), turn(spring.child));
             let sines = [between.x, between.y, between.z].into_iter();
             let of_axes = sines.zip(spring.stiffness_nm_per_rad).map(|(sine, stiffness)| {
                 let angle_rad = 2.0 * f64::from(libm::asinf(sine.clamp(-1.0, 1.0)));

@@ -19,7 +19,7 @@ impl Simulation {
         let on_parent = match mount {
             Some(mount) => {
                 let turn = *self.physics.bodies[self.parts[parent]].rotation();
-                centre(parent) + turn * mount.at_m
+                centre(parent) + self.turned(turn, mount.at_m)
             }
             None => centre(parent) - self.centre_to_front(parent),
         };

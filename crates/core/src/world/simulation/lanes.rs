@@ -3,9 +3,11 @@
 use rapier3d::prelude::*;
 
 use super::Simulation;
-use crate::world::lanes::{Chain, Contact, LaneSolver, LanesCommon, PartState, Touching};
+use crate::world::lanes::{
+    Chain, Contact, LaneSolver, LanesCommon, PartState, Touching, VectorLevel,
+};
 use crate::world::turning::{product, turned};
-use crate::world::{Disqualification, JointTorque, PhysicsEngine, WorldPlan};
+use crate::world::{Disqualification, JointPlan, JointTorque, PhysicsEngine, WorldPlan};
 
 /// Number of snakes that are advanced side by side: as many as AVX has lanes, and twice as many as SSE2 and NEON have. On web pages, where
 /// the size of the code counts, it is the number of lanes of WebAssembly.
@@ -28,14 +30,11 @@ pub(super) struct LanesWorld {
 }
 
 impl LanesWorld {
-    /// Builds the world of a plan that selects the engine *lanes*; `None` if it selects rapier. Plans that *lanes* cannot simulate are
-    /// rejected earlier. If one still arrived, rapier would simulate it.
+    /// Builds the world of a plan that selects the engine *lanes*; `None` if it selects rapier.
     pub fn of(plan: &WorldPlan) -> Option<Box<Self>> {
-        let is_possible = plan.body.obstacle_in_lanes().is_none();
         let is_chosen = plan.physics.engine == PhysicsEngine::Lanes;
-        debug_assert!(!is_chosen || is_possible, "the plan was not checked");
-        let is_chosen = is_chosen && is_possible;
-        is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver: LaneSolver::default() }))
+        let solver = || LaneSolver::at(VectorLevel::in_use());
+        is_chosen.then(|| Box::new(Self { chain: Chain::new(plan), solver: solver() }))
     }
 
     /// Returns the contacts of the last step.
@@ -118,6 +117,11 @@ impl Simulation {
         if self.lanes.is_some() { product(first, second) } else { first * second }
     }
 
+    /// Returns the axes of a joint in the world, given the rotation of its parent: the joint bends about x and twists about y.
+    pub(super) fn joint_axes(&self, joint: &JointPlan, parent: Rotation) -> Rotation {
+        joint.mount.map_or(parent, |mount| self.product(parent, mount.turn))
+    }
+
     /// Returns the inertia of a part about its own axes in the engine *lanes*, in kg·m²; `None` in worlds of rapier.
     pub(super) fn inertia_in_lanes_kg_m2(&self, part: usize) -> Option<Vector> {
         Some(self.lanes.as_ref()?.chain.mass_of(part)?.1)
@@ -160,12 +164,22 @@ impl Simulation {
 }
 
 /// Steps several worlds of the engine *lanes* side by side.
-#[derive(Default)]
 pub struct LockStep {
     solver: LaneSolver<LANES>,
 }
 
+impl Default for LockStep {
+    fn default() -> Self {
+        Self::at(VectorLevel::in_use())
+    }
+}
+
 impl LockStep {
+    /// Makes a lock step that computes with these vector instructions. They change no bit.
+    pub fn at(level: VectorLevel) -> Self {
+        Self { solver: LaneSolver::at(level) }
+    }
+
     /// Advances up to [`LANES`] worlds by one step each, with the same bits as [`Simulation::step`]. All worlds must have the same
     /// [`Simulation::common`].
     pub fn step(

@@ -42,34 +42,45 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::save::shipped_champion;
+    use crate::save::library::shipped_champions;
     use crate::score::Rollout;
+    use crate::world::PhysicsEngine;
 
     #[test]
     fn a_mirror_has_the_senses_and_the_joints_of_its_original() {
-        let champion = shipped_champion().expect("well formed").champion;
-        let mut original = Rollout::new(&champion.genome, &champion.trial);
-        let mut mirror = Simulation::new(&champion.trial.world_plan(&champion.genome));
-        let (mut of_original, mut of_mirror, mut loaded) = (Vec::new(), Vec::new(), 0);
-        for _ in 0..300 {
-            assert!(original.advance());
-            let world = original.simulation();
-            world.read_limbs(&mut of_original);
-            let limbs = world.poses().zip(world.velocities()).enumerate();
-            let states = limbs.map(|(limb, (pose, [velocity_m_s, angular_velocity_rad_s]))| {
-                let (touches, force_n) = world.sensed_contact(limb);
-                let contact_n = touches.then_some(force_n);
-                LimbState { pose, velocity_m_s, angular_velocity_rad_s, contact_n }
-            });
-            mirror.mirror(&states.collect::<Vec<_>>());
-            mirror.read_limbs(&mut of_mirror);
-            assert_eq!(of_mirror, of_original);
-            assert!(mirror.joint_states().eq(world.joint_states()));
-            assert_eq!(mirror.read_snake(), world.read_snake());
-            assert_eq!(mirror.climb(), world.climb());
-            let under_load = of_mirror.iter().filter(|limb| limb.is_touching && limb.load_n > 0.0);
-            loaded += under_load.count();
+        for (name, loaded) in shipped_champions() {
+            if !["climber", "crawler", "sponge"].contains(&name) {
+                continue;
+            }
+            for engine in [PhysicsEngine::Rapier, PhysicsEngine::Lanes] {
+                let mut trial = loaded.champion.trial.clone();
+                trial.physics.engine = engine;
+                let mut original = Rollout::new(&loaded.champion.genome, &trial);
+                let mut mirror = Simulation::new(&trial.world_plan(&loaded.champion.genome));
+                let (mut of_original, mut of_mirror, mut pressed) = (Vec::new(), Vec::new(), 0);
+                for _ in 0..300 {
+                    assert!(original.advance(), "{name} in {engine:?}");
+                    let world = original.simulation();
+                    world.read_limbs(&mut of_original);
+                    let limbs = world.poses().zip(world.velocities()).enumerate();
+                    let states =
+                        limbs.map(|(limb, (pose, [velocity_m_s, angular_velocity_rad_s]))| {
+                            let (touches, force_n) = world.sensed_contact(limb);
+                            let contact_n = touches.then_some(force_n);
+                            LimbState { pose, velocity_m_s, angular_velocity_rad_s, contact_n }
+                        });
+                    mirror.mirror(&states.collect::<Vec<_>>());
+                    mirror.read_limbs(&mut of_mirror);
+                    assert_eq!(of_mirror, of_original, "{name} in {engine:?}");
+                    assert!(mirror.joint_states().eq(world.joint_states()));
+                    assert_eq!(mirror.read_snake(), world.read_snake());
+                    assert_eq!(mirror.climb(), world.climb());
+                    let under_load =
+                        of_mirror.iter().filter(|limb| limb.is_touching && limb.load_n > 0.0);
+                    pressed += under_load.count();
+                }
+                assert!(pressed > 100, "{name} in {engine:?}: {pressed} limbs under load");
+            }
         }
-        assert!(loaded > 100, "{loaded} readings of limbs under load");
     }
 }

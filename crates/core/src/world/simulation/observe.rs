@@ -67,7 +67,7 @@ impl Simulation {
         self.body.joints.iter().map(|joint| {
             let [parent, child] =
                 [joint.parent, joint.child].map(|limb| &self.physics.bodies[self.parts[limb]]);
-            let into_joint = joint.axes(*parent.rotation()).inverse();
+            let into_joint = self.joint_axes(joint, *parent.rotation()).inverse();
             let turn = self.product(into_joint, *child.rotation());
             let rate = self.turned(into_joint, child.angvel() - parent.angvel());
             // A quaternion and its negative are the same rotation. The one with w ≥ 0 has the smaller angle.

@@ -36,6 +36,7 @@ macro_rules! in_both_engines {
 
 mod energy;
 mod marks;
+mod newborns;
 mod observe;
 mod patches;
 mod random;
@@ -43,6 +44,7 @@ mod rates;
 mod settle;
 mod soft;
 mod surface;
+mod trees;
 
 use super::super::{JointPlan, PartPlan, PhysicsSettings, Skin, Stairs, Surface};
 use super::*;

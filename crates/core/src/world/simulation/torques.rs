@@ -17,7 +17,8 @@ impl Simulation {
             let bend_nm = torque.bend_nm.clamp(-joint.max_bend_torque_nm, joint.max_bend_torque_nm);
             let twist_nm =
                 torque.twist_nm.clamp(-joint.max_twist_torque_nm, joint.max_twist_torque_nm);
-            let axes = joint.axes(*self.physics.bodies[self.parts[joint.parent]].rotation());
+            let axes =
+                self.joint_axes(joint, *self.physics.bodies[self.parts[joint.parent]].rotation());
             let couple = self.turned(axes, Vector::new(bend_nm, twist_nm, 0.0));
             let rates_rad_s = self.joint_rates(joint, axes);
             let [bend, twist] = rates_rad_s;

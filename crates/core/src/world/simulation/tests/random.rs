@@ -1,10 +1,11 @@
-//! Random chains on random surfaces under random torques: every number that is not finite must be detected.
+//! Random rows, trees and soft snakes on random surfaces under random torques: every number that is not finite must be detected.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::rng::{Purpose, stream};
+use crate::world::{Elasticity, Mount, SOFTEST_M4_S2, STIFFEST_M4_S2, modulus_at_pa};
 
 /// Draws a number between two positive ones, with the same chance for each order of magnitude.
 fn between(rng: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
@@ -28,9 +29,45 @@ fn surface(rng: &mut ChaCha8Rng) -> Surface {
     }
 }
 
-/// Draws a world from nearly all numbers that settings and genomes allow.
-fn random_plan(rng: &mut ChaCha8Rng) -> WorldPlan {
-    let limbs = rng.random_range(1..=12);
+/// Kinds of bodies: rigid limbs in a row, limbs in a tree, and soft limbs in a row.
+#[derive(Debug, Clone, Copy)]
+enum SnakeKind {
+    Row,
+    Tree,
+    Soft,
+}
+
+/// Hangs each limb on a random one before it, at a random place and turned at random.
+fn branch(plan: &mut WorldPlan, rng: &mut ChaCha8Rng, shape: &mut ChaCha8Rng) {
+    for joint in &mut plan.body.joints {
+        joint.parent = shape.random_range(0..joint.child);
+        let half_m = Vector::from(plan.body.parts[joint.parent].size_m()) / 2.0;
+        let mut share = || rng.random_range(-1.0_f32..=1.0);
+        let at_m = Vector::new(share(), share(), share()) * half_m;
+        let turn = Rotation::from_xyzw(share(), share(), share(), 1.1 + share()).normalize();
+        joint.mount = Some(Mount { at_m, turn, start_rad: [share(), share()] });
+    }
+}
+
+/// Divides limbs into parts with springs.
+fn soften(plan: &mut WorldPlan, rng: &mut ChaCha8Rng, shape: &mut ChaCha8Rng) {
+    let body = plan.body.clone();
+    let elastic = body.parts.iter().map(|part| {
+        let bending_m4_s2 = between(rng, SOFTEST_M4_S2, STIFFEST_M4_S2 * 0.999);
+        let sides_m = [part.width_m, part.height_m];
+        let youngs_modulus_pa = modulus_at_pa(bending_m4_s2, sides_m, part.density_kg_m3);
+        let damping_ratio = or_none(rng, 0.01, 2.0);
+        let parts = shape.random_range(1..=4);
+        Elasticity { youngs_modulus_pa, parts, damping_ratio }
+    });
+    let elastic: Vec<Elasticity> = elastic.collect();
+    plan.body = body.with_soft_limbs(|limb| Some(elastic[limb]));
+}
+
+/// Draws a world from nearly all numbers that settings and genomes allow. `shape` alone draws which parts the body has and how they are
+/// joined.
+fn random_plan(kind: SnakeKind, rng: &mut ChaCha8Rng, shape: &mut ChaCha8Rng) -> WorldPlan {
+    let limbs = shape.random_range(1..=12);
     let mut plan = plan(limbs);
     for part in &mut plan.body.parts {
         part.width_m = between(rng, 0.1, 10.0);
@@ -59,15 +96,20 @@ fn random_plan(rng: &mut ChaCha8Rng) -> WorldPlan {
     // Many snakes begin inside of the stairs.
     plan.start_y_m = rng.random_range(-20.0..=20.0);
     plan.start_turn_rad = rng.random_range(-3.2..=3.2);
+    match kind {
+        SnakeKind::Row => {}
+        SnakeKind::Tree => branch(&mut plan, rng, shape),
+        SnakeKind::Soft => soften(&mut plan, rng, shape),
+    }
     plan
 }
 
 /// Steps random snakes with these numbers. Returns how many of their steps were healthy.
-fn step_random_snakes(numbers: std::ops::Range<u32>) -> u32 {
+fn step_random_snakes(kind: SnakeKind, numbers: std::ops::Range<u32>) -> u32 {
     let mut healthy = 0;
     for number in numbers {
         let mut rng = stream(1, 0, number, Purpose::Perturbation);
-        let plan = random_plan(&mut rng);
+        let plan = random_plan(kind, &mut rng, &mut stream(1, 1, number, Purpose::Perturbation));
         let mut simulation = Simulation::new(&plan);
         assert!(simulation.lanes.is_some());
         for step in 0..12 {
@@ -90,7 +132,7 @@ fn step_random_snakes(numbers: std::ops::Range<u32>) -> u32 {
                     && pose.rotation.is_finite()
                     && linear.is_finite()
                     && angular.is_finite();
-                assert!(is_finite, "snake {number}, step {step}: {pose:?} {linear} {angular}");
+                assert!(is_finite, "{kind:?} {number}, step {step}: {pose:?} {linear} {angular}");
             }
             let forces = simulation.contact_forces();
             let is_finite = forces.iter().all(|force| force.force_n.is_finite());
@@ -102,16 +144,20 @@ fn step_random_snakes(numbers: std::ops::Range<u32>) -> u32 {
 }
 
 #[test]
-fn random_chains_end_or_stay_finite() {
+fn random_snakes_end_or_stay_finite() {
     ENGINE.set(PhysicsEngine::Lanes);
-    let healthy = step_random_snakes(0..2_000);
-    assert!(healthy > 4_000, "{healthy} healthy steps");
+    for (kind, least) in
+        [(SnakeKind::Row, 4_000), (SnakeKind::Tree, 1_000), (SnakeKind::Soft, 1_000)]
+    {
+        let healthy = step_random_snakes(kind, 0..2_000);
+        assert!(healthy > least, "{kind:?}: {healthy} healthy steps");
+    }
 }
 
-/// Runs the test with a million chains: `cargo test --release -p snakes-core a_million_random_chains -- --ignored`.
+/// Runs the test with a million snakes of each kind: `cargo test --release -p snakes-core a_million_random_snakes -- --ignored`.
 #[test]
-#[ignore = "takes half a minute"]
-fn a_million_random_chains_end_or_stay_finite() {
+#[ignore = "takes minutes"]
+fn a_million_random_snakes_end_or_stay_finite() {
     let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get) as u32;
     std::thread::scope(|scope| {
         let each = 1_000_000 / threads + 1;
@@ -119,7 +165,11 @@ fn a_million_random_chains_end_or_stay_finite() {
             .map(|thread| {
                 scope.spawn(move || {
                     ENGINE.set(PhysicsEngine::Lanes);
-                    step_random_snakes(thread * each..(thread + 1) * each)
+                    let numbers = thread * each..(thread + 1) * each;
+                    [SnakeKind::Row, SnakeKind::Tree, SnakeKind::Soft]
+                        .map(|kind| step_random_snakes(kind, numbers.clone()))
+                        .iter()
+                        .sum::<u32>()
                 })
             })
             .collect();
@@ -145,15 +195,14 @@ fn random_snakes_have_the_same_bits_in_lock_step() {
     ENGINE.set(PhysicsEngine::Lanes);
     let mut lock_step = LockStep::default();
     let (mut healthy, mut broken) = (0, 0);
-    for group in 0..60_u32 {
+    for group in 0..96_u32 {
         let mut rng = stream(2, 0, group, Purpose::Perturbation);
-        let first = random_plan(&mut rng);
-        let mut plans = vec![first];
-        while plans.len() < 1 + group as usize % LANES {
-            let mut plan = random_plan(&mut rng);
-            if plan.body.parts.len() != plans[0].body.parts.len() {
-                continue;
-            }
+        let kind = [SnakeKind::Row, SnakeKind::Tree, SnakeKind::Soft][group as usize % 3];
+        // All snakes of a group have the same shape.
+        let shape = || stream(2, 1, group, Purpose::Perturbation);
+        let mut plans = vec![random_plan(kind, &mut rng, &mut shape())];
+        while plans.len() < 1 + group as usize / 3 % LANES {
+            let mut plan = random_plan(kind, &mut rng, &mut shape());
             plan.physics = plans[0].physics.clone();
             plans.push(plan);
         }
