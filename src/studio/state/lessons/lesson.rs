@@ -52,7 +52,7 @@ pub(crate) struct Side {
     /// Label of the lane or run.
     pub name: &'static str,
     /// Changed settings of the lane or run.
-    pub changes: Changes,
+    pub changes: LaneChanges,
     /// Change of the champion's body, with the index of the block at which it is made. The gait is not changed.
     pub body_change: Option<(BodyChange, usize)>,
     /// Seed of the run.
@@ -62,9 +62,9 @@ pub(crate) struct Side {
 }
 
 /// Names of changed settings, with their values as text.
-type Changes = &'static [(&'static str, &'static str)];
+type LaneChanges = &'static [(&'static str, &'static str)];
 
-pub(super) const fn lane(name: &'static str, changes: Changes) -> Side {
+pub(super) const fn lane(name: &'static str, changes: LaneChanges) -> Side {
     Side { name, changes, body_change: None, seed: 1, threads: 1 }
 }
 
@@ -74,7 +74,7 @@ pub(super) const fn lane_of_body(name: &'static str, change: BodyChange, block: 
 }
 
 /// Creates a run that computes one snake at a time.
-pub(super) const fn run(name: &'static str, seed: u64, changes: Changes) -> Side {
+pub(super) const fn run(name: &'static str, seed: u64, changes: LaneChanges) -> Side {
     Side { seed, ..lane(name, changes) }
 }
 
