@@ -61,7 +61,7 @@ fn tables(index: usize) -> String {
                 &["Run", "Best fitness (m)", "Disqualified", "Where does the best end?"]
             }
             Asks::LateBodyChanges => {
-                &["Run", "Best fitness", "LaneChanges of the body in the second half"]
+                &["Run", "Best fitness", "Changes of the body in the second half"]
             }
             Asks::SameHash => &["Run", "Hash"],
         }
