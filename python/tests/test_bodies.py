@@ -57,9 +57,10 @@ def test_r4_an_environment_has_the_body_of_a_champion(name, limbs):
     assert other.action_space == env.action_space
 
 
-def test_r4_a_creature_and_a_soft_snake_move():
+@pytest.mark.parametrize("engine", ["rapier", "lanes"])
+def test_r4_a_creature_and_a_soft_snake_move_in_both_engines(engine):
     for preset in ("creatures", "squishy", "bodies"):
-        env = gymnasium.make("SnakesAndStairs-v0", preset=preset, settings=SHORT)
+        env = gymnasium.make("SnakesAndStairs-v0", preset=preset, settings={**SHORT, "physics.engine": engine})
         env.reset(seed=1)
         before = env.unwrapped.poses()
         env.action_space.seed(1)

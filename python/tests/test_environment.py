@@ -258,7 +258,6 @@ def test_perturbations_follow_the_seed():
         ({"settings": {"surface.friction": object()}}, "surface.friction is a object; allowed: a number"),
         ({"body": -1}, "body is -1; allowed: None, a seed, a champion or the path of its file"),
         ({"body": SAVES / "six.ron", "settings": {"agent.limbs": 7}}, "settings is of trial.agent; allowed: no settings"),
-        ({"body": SAVES / "foam.ron", "preset": "bodies"}, "trial.physics.engine|physics.engine is lanes; allowed: rapier"),
         ({"actions": "muscles"}, 'actions is "muscles"; allowed: targets, torques'),
         ({"steps_per_action": 0}, "steps_per_action is 0; allowed: 1 to 1000"),
         ({"steps_per_action": -1}, "steps_per_action is -1; allowed: 1 to 1000"),
