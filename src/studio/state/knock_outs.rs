@@ -1,7 +1,8 @@
 //! Race of one champion with copies that each lack one thing, to find out what its climb needs.
 
+use super::lineup::race_of;
+use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{MAX_LANES, Show};
 use snakes_core::schema::PerPart;
 use snakes_core::score::AgentSettings;
 use snakes_core::world::JointPlan;
@@ -42,15 +43,8 @@ pub(crate) fn knock_outs(champion: &StagedChampion) -> Result<Show, String> {
     let lacking = by_motion.into_iter().chain(by_joint);
     let lacking = lacking.filter(|staged| has_lost(staged) && staged.check().is_ok());
     let whole = champion.simulated().named("nothing missing".to_owned());
-    let champions: Vec<StagedChampion> =
-        [whole].into_iter().chain(lacking).take(MAX_LANES).collect();
-    if champions.len() < 2 {
-        return Err(
-            "The torques of this snake's joints are in its genes, so none can be taken away."
-                .to_owned(),
-        );
-    }
-    Ok(Show::race(champions))
+    let refusal = "The torques of this snake's joints are in its genes, so none can be taken away.";
+    race_of(std::iter::once(whole).chain(lacking), refusal)
 }
 
 #[cfg(test)]

@@ -10,6 +10,18 @@ use snakes_core::evolve::Champion;
 /// Number of generations that race if there are more generations than lanes: as many as in the report.
 pub(crate) const CHOSEN_GENERATIONS: usize = 6;
 
+/// Creates a race of one champion with variations of it, of which as many are kept as there are lanes.
+///
+/// # Errors
+/// There are no variations; the error is `refusal`.
+pub(super) fn race_of(
+    lanes: impl Iterator<Item = StagedChampion>,
+    refusal: impl Into<String>,
+) -> Result<Show, String> {
+    let champions: Vec<StagedChampion> = lanes.take(MAX_LANES).collect();
+    if champions.len() < 2 { Err(refusal.into()) } else { Ok(Show::race(champions)) }
+}
+
 /// Returns the champion that was chosen; `None` if it is not kept any more.
 pub(crate) fn champion_of(
     pick: &Pick,

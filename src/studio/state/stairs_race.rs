@@ -1,7 +1,8 @@
 //! Race of one champion on many staircases, in lanes side by side.
 
+use super::lineup::race_of;
+use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{MAX_LANES, Show};
 use snakes_core::save::built_in_stairs;
 
 /// Creates a race of the champion on its own stairs and on each of the built-in ones that it fits.
@@ -17,17 +18,13 @@ pub(crate) fn stairs_race(champion: &StagedChampion) -> Result<Show, String> {
     });
     // The champion's own stairs may be among the built-in ones, and are not repeated.
     let others = others.filter(|staged| staged.is_changed() && staged.check().is_ok());
-    let champions: Vec<StagedChampion> = [own].into_iter().chain(others).take(MAX_LANES).collect();
-    if champions.len() < 2 {
-        return Err("The snake on the stage fits no other stairs.".to_owned());
-    }
-    Ok(Show::race(champions))
+    race_of(std::iter::once(own).chain(others), "The snake on the stage fits no other stairs.")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::stage::StageMode;
+    use crate::studio::stage::{MAX_LANES, StageMode};
     use crate::studio::state::current_run::climber;
 
     #[test]

@@ -1,5 +1,6 @@
 //! Sweep: one setting of the world at five values, in five lanes side by side.
 
+use super::lineup::race_of;
 use crate::studio::stage::Show;
 use crate::studio::stage::staged_champion::StagedChampion;
 use snakes_core::evolve::{Settings, fields, with_fields, world_in_words};
@@ -51,11 +52,8 @@ pub(crate) fn sweep(champion: &StagedChampion, field: &str) -> Result<Show, Stri
         };
         staged.check().is_ok().then_some(staged)
     };
-    let champions: Vec<StagedChampion> = values(range, now).into_iter().filter_map(world).collect();
-    if champions.len() < 2 {
-        return Err(format!("The snake on the stage fits no other value of {label}."));
-    }
-    Ok(Show::race(champions))
+    let refusal = format!("The snake on the stage fits no other value of {label}.");
+    race_of(values(range, now).into_iter().filter_map(world), refusal)
 }
 
 /// Returns the values of a sweep in ascending order. With a logarithmic slider they are ratios of the present value.

@@ -85,7 +85,7 @@ fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<C
     ui.add_space(theme::GAP);
 }
 
-/// What the files of the menu Share contain.
+/// Contents of the files of the menu Share.
 const SHARED: &str = "Snakes on the stage; of a whole generation, the best";
 /// Name of the action after which the submenu of recent files is placed.
 const BEFORE_RECENT: &str = "Open…";

@@ -29,7 +29,7 @@ pub(crate) struct Lesson {
 pub(crate) struct LessonScene {
     /// Label of the scene's button.
     pub label: &'static str,
-    /// What the sides of the scene are.
+    /// Kind of the sides of the scene.
     pub shows: Shows,
     /// Question that the reader answers by a guess before the experiment; `None` if the scene is no experiment.
     pub question: Option<Question>,
@@ -37,7 +37,7 @@ pub(crate) struct LessonScene {
     pub sides: &'static [Side],
 }
 
-/// What a scene shows.
+/// Kind of the sides of a scene: snakes that race, or runs that evolve.
 #[derive(Debug)]
 pub(crate) enum Shows {
     /// The built-in champion of this name in several worlds or bodies, one per lane.
