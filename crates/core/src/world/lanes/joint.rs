@@ -3,7 +3,7 @@
 use crate::world::contact::joint_coefficients;
 use crate::world::{JointPlan, PhysicsSettings, SpringPlan, Vector};
 
-/// What holds a part on the part before it, and where.
+/// A joint or a spring that holds a part on the part before it, and its place there.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Hold {
     /// A universal joint at the rear face of the front part, with the axes of that part.
