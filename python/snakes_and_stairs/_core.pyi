@@ -104,6 +104,10 @@ class Evaluations:
         """The reason of each disqualification; None for a healthy snake."""
 
     @property
+    def endings(self) -> list[Optional[str]]:
+        """How each trial ended, in words, such as "fell off the side from step 4"; None for a snake that was not simulated."""
+
+    @property
     def on_landing(self) -> NDArray[np.bool_]:
         """Whether it ended healthy with all steps under its middle block."""
 

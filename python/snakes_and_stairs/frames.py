@@ -34,9 +34,10 @@ EVALUATION_COLUMNS = (
 
 
 def evaluations_frame(evaluations: Evaluations) -> pandas.DataFrame:
-    """A row per snake: fitness, steps climbed, energy, behaviour, trace hash, and the reason of a disqualification."""
+    """A row per snake: fitness, steps climbed, energy, behaviour, trace hash, the ending, and the reason of a disqualification."""
     pandas = _pandas()
     columns: dict[str, Any] = {name: getattr(evaluations, name) for name in EVALUATION_COLUMNS}
+    columns["ending"] = evaluations.endings
     columns["reason"] = evaluations.reasons
     return pandas.DataFrame(columns)
 

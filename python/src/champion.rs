@@ -66,6 +66,8 @@ impl Champion {
         if let Some(recorded) = recorded.as_object_mut() {
             let disqualified = evaluation.disqualified.map(|reason| reason.words());
             recorded.insert("disqualified".to_owned(), json!(disqualified));
+            let ending = evaluation.ending.map(|ending| ending.words());
+            recorded.insert("ending".to_owned(), json!(ending));
         }
         let origin = &champion.origin;
         let exam = exam.iter().map(|result| {
@@ -77,6 +79,7 @@ impl Champion {
                 "median_steps": result.median_steps,
                 "kept": result.kept,
                 "each": result.each,
+                "endings": result.endings,
             })
         });
         Ok(json!({

@@ -146,6 +146,12 @@ impl Evaluations {
         self.scored.iter().map(reason).collect()
     }
 
+    /// How each trial ended, in words, such as "fell off the side from step 4"; None for a snake that was not simulated.
+    #[getter]
+    fn endings(&self) -> Vec<Option<String>> {
+        self.scored.iter().map(|scored| Some(scored.evaluation.ending?.words())).collect()
+    }
+
     /// Whether the snake ended healthy, with all steps under its middle block.
     #[getter]
     fn on_landing<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {

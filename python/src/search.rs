@@ -321,6 +321,7 @@ impl Search {
                 steps: 0,
                 effort: None,
                 behaviour: None,
+                ending: None,
             };
             Ok(Scored { evaluation, episode: None })
         });

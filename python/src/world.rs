@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use snakes_core::control::ExternalControl;
 use snakes_core::genome::Genome;
 use snakes_core::genome::controllers::RecordedActions;
-use snakes_core::score::{Evaluation, Rollout};
+use snakes_core::score::{Ending, Evaluation, Rollout};
 use snakes_core::world::{Disqualification, JointTorque};
 use snakes_lab::run::caught;
 
@@ -155,6 +155,13 @@ impl World {
     pub fn evaluation(&self) -> Evaluation {
         let evaluation = self.rollout.evaluation();
         let crash = self.has_crashed.then_some(Disqualification::Crashed);
-        Evaluation { disqualified: evaluation.disqualified.or(crash), ..evaluation }
+        match crash {
+            Some(_) => Evaluation {
+                disqualified: evaluation.disqualified.or(crash),
+                ending: Some(Ending::CRASHED),
+                ..evaluation
+            },
+            None => evaluation,
+        }
     }
 }

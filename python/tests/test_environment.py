@@ -153,9 +153,9 @@ def test_senses_and_parts_of_actions_are_described():
     senses = env.senses
     assert len(senses) == env.observation_space.shape[0] == 60
     names = [sense["name"] for sense in senses]
-    assert names[0] == "joint 1 bend" and names[16] == "limb 1 touch" and names[-1] == "aside"
+    assert names[0] == "joint 1 bend" and names[16] == "block 1 touch" and names[-1] == "aside"
     assert [sense["index"] for sense in senses] == list(range(60))
-    assert senses[names.index("limb 2 gap")]["unit"] == "m"
+    assert senses[names.index("block 2 gap")]["unit"] == "m"
     parts = env.action_parts
     assert [part["name"] for part in parts[:3]] == ["joint 1 bend", "joint 1 twist", "joint 2 bend"]
     assert {part["unit"] for part in parts} == {"rad"}
@@ -184,7 +184,7 @@ def test_every_sense_has_a_scale_and_forces_say_where_they_are_half():
     env = make(settings={**SHORT, "gravity_m_s2": 9.0}).unwrapped
     assert all(sense["scale"] > 0 for sense in env.senses)
     senses = {sense["name"]: sense for sense in env.senses}
-    for name in ("limb 1 load", "limb 5 blocked"):
+    for name in ("block 1 load", "block 5 blocked"):
         sense = senses[name]
         assert (sense["unit"], sense["scale"], sense["low"], sense["high"]) == ("", 1.0, 0.0, 1.0)
         settings = env.problem.settings
@@ -193,7 +193,7 @@ def test_every_sense_has_a_scale_and_forces_say_where_they_are_half():
         )
         ends = [float(settings[f"genome.density_{end}_kg_m3"]) for end in ("min", "max")]
         assert sense["half_force_n"] == pytest.approx(length * width * height * sum(ends) / 2 * 9.0)
-    assert senses["limb 1 gap"]["half_force_n"] is None
+    assert senses["block 1 gap"]["half_force_n"] is None
 
 
 def test_observations_stay_within_their_space():

@@ -6,6 +6,7 @@ use indicatif::ProgressBar;
 use serde_json::{Value, json};
 
 use super::args::{Args, ExamArgs};
+use super::endings::{add_endings, endings_table};
 use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print, print_json};
@@ -19,10 +20,10 @@ use snakes_core::world::WorldPlan;
 use snakes_lab::export::mjcf;
 use snakes_lab::run::exam::{exam_trials, examine};
 use snakes_lab::run::headless::HeadlessError;
-use snakes_lab::run::markdown::markdown_table;
-use snakes_lab::run::mujoco::{
-    CLIMBED_STEPS, MUJOCO, Mujoco, MujocoError, MujocoResult, mujoco_trials,
+use snakes_lab::run::judge::{
+    CLIMBED_STEPS, Court, JUDGES, Judge, JudgeError, JudgeResult, judge_trials,
 };
+use snakes_lab::run::markdown::markdown_table;
 use snakes_lab::run::progress_bar::with_bar;
 use snakes_lab::run::{Evaluator, RunControl, short};
 use snakes_lab::statistics::Share;
@@ -31,9 +32,9 @@ use snakes_lab::study::suites_named;
 /// Examines champions and prints the results. With --write, also stores them in the champions' files.
 pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     let ExamArgs { files, suite, write: writes, .. } = wanted;
-    let (suites, asks_mujoco) = asked(suite)?;
-    if asks_mujoco && *writes {
-        let allowed = format!("other suites; the results of {MUJOCO} are not stored");
+    let (suites, judges) = asked(suite)?;
+    if let Some(judge) = judges.first().filter(|_| *writes) {
+        let allowed = format!("other suites; the results of {} are not stored", judge.name);
         return Err(Invalid::new("--write", "set", allowed).into());
     }
     let load = |file: &PathBuf| {
@@ -49,7 +50,8 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     let first = files.first().map_or(Path::new(""), PathBuf::as_path);
     let evaluator = evaluator(args, "exam", first)?;
     let control = cancel_on_interrupt()?;
-    let mut mujoco = if asks_mujoco { Some(Mujoco::start()?) } else { None };
+    let mut courts =
+        judges.into_iter().map(Court::start).collect::<Result<Vec<_>, JudgeError>>()?;
     let mut rows = Vec::new();
     let mut examine_one = |file: &PathBuf, loaded: LoadedChampion| -> Result<(), CliError> {
         let matches = equals_record(file, &loaded)?;
@@ -61,17 +63,15 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
         if *writes {
             store_exam(file, &loaded, &results)?;
         }
-        let in_mujoco = match &mut mujoco {
-            Some(mujoco) => Some(in_mujoco(mujoco, &loaded, &*evaluator, &control)?),
-            None => None,
-        };
+        let judge = |court: &mut Court| judged(court, &loaded, &*evaluator, &control);
+        let judged = courts.iter_mut().map(judge).collect::<Result<Vec<_>, CliError>>()?;
         if args.json {
             results.iter().try_for_each(|result| print_json(&json_line(file, result, matches)))?;
-            if let Some((result, mujoco)) = in_mujoco.as_ref().zip(mujoco.as_ref()) {
-                print_json(&mujoco_line(file, result, mujoco.version(), matches))?;
+            for (result, court) in judged.iter().zip(&courts) {
+                print_json(&judge_line(file, result, court.version(), matches))?;
             }
         } else {
-            rows.push(ExamRow { name: name_of(file), results, in_mujoco });
+            rows.push(ExamRow { name: name_of(file), results, judged });
         }
         Ok(())
     };
@@ -80,14 +80,14 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     if result.is_err() {
         // The finished rows are printed even after an error, because they took minutes.
         if !rows.is_empty() {
-            print(&table(&suites, &rows))?;
+            print(&tables(&suites, &rows))?;
         }
         return result;
     }
     if args.json {
         return print_json(&json!({"type": "done", "files": files.len()}));
     }
-    print(&table(&suites, &rows))
+    print(&tables(&suites, &rows))
 }
 
 /// Refuses a named suite that can say nothing of any of the champions.
@@ -106,34 +106,36 @@ fn check_suites(
     Err(Invalid::new("--suite", suite.choice().name, allowed))
 }
 
-/// Returns the suites that the user names, or the usual suites if none is named; and whether MuJoCo is named.
-fn asked(names: &[String]) -> Result<(Vec<ExamSuite>, bool), Invalid> {
-    let own: Vec<String> = names.iter().filter(|name| *name != MUJOCO).cloned().collect();
+/// Returns the suites that the user names, or the usual suites if none is named; and the judges that are named.
+fn asked(names: &[String]) -> Result<(Vec<ExamSuite>, Vec<&'static Judge>), Invalid> {
+    let own: Vec<String> =
+        names.iter().filter(|name| Judge::named(name).is_none()).cloned().collect();
     let default: &[ExamSuite] = if names.is_empty() { &ExamSuite::USUAL } else { &[] };
-    let with_mujoco = |mut invalid: Invalid| {
-        invalid.allowed += &format!(", {MUJOCO}");
+    let with_judges = |mut invalid: Invalid| {
+        JUDGES.iter().for_each(|judge| invalid.allowed += &format!(", {}", judge.name));
         invalid
     };
     let chosen = if own.is_empty() {
         default.to_vec()
     } else {
-        suites_named("--suite", &own).map_err(with_mujoco)?
+        suites_named("--suite", &own).map_err(with_judges)?
     };
-    Ok((chosen, own.len() < names.len()))
+    let is_named = |judge: &&Judge| names.iter().any(|name| name == judge.name);
+    Ok((chosen, JUDGES.iter().filter(is_named).collect()))
 }
 
-/// Examines a champion in MuJoCo, with a progress bar.
-fn in_mujoco(
-    mujoco: &mut Mujoco,
+/// Examines a champion with a judge, with a progress bar.
+fn judged(
+    court: &mut Court,
     loaded: &LoadedChampion,
     evaluator: &dyn Evaluator,
     control: &RunControl,
-) -> Result<MujocoResult, CliError> {
-    let bar = ProgressBar::new(mujoco_trials().into());
+) -> Result<JudgeResult, CliError> {
+    let bar = ProgressBar::new(judge_trials().into());
     let model = |plan: &WorldPlan| mjcf("snake", plan, &[]);
-    let examined = || mujoco.examine(&loaded.champion, &model, evaluator, control);
+    let examined = || court.examine(&loaded.champion, &model, evaluator, control);
     match with_bar(&bar, control, examined) {
-        Err(MujocoError::Cancelled) => Err(HeadlessError::Cancelled { kept: None }.into()),
+        Err(JudgeError::Cancelled) => Err(HeadlessError::Cancelled { kept: None }.into()),
         other => trusted(evaluator, other),
     }
 }
@@ -142,7 +144,7 @@ fn in_mujoco(
 struct ExamRow {
     name: String,
     results: Vec<SuiteResult>,
-    in_mujoco: Option<MujocoResult>,
+    judged: Vec<JudgeResult>,
 }
 
 fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> Value {
@@ -153,7 +155,7 @@ fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> Value {
     let each: serde_json::Map<_, _> =
         kept_in.iter().map(|(label, kept)| (label.clone(), short(*kept))).collect();
     let classes: Vec<_> = result.classes().into_iter().map(class_json).collect();
-    json!({
+    let mut line = json!({
         "type": "suite",
         "file": file.display().to_string(),
         "suite": result.suite.choice().name,
@@ -165,7 +167,9 @@ fn json_line(file: &Path, result: &SuiteResult, matches: bool) -> Value {
         "kept_in": each,
         "classes": classes,
         "matches": matches,
-    })
+    });
+    add_endings(&mut line, &result.endings);
+    line
 }
 
 /// Returns a class of the held-out stairs as JSON, with the 95 % interval of the share of landings.
@@ -182,18 +186,20 @@ fn with_interval(landed: u32, trials: u32) -> String {
     format!("{landed} of {trials} ({least:.2}–{most:.2})")
 }
 
-fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool) -> Value {
+fn judge_line(file: &Path, result: &JudgeResult, version: &str, matches: bool) -> Value {
     let of = |engine: usize| {
-        json!({
+        let mut of = json!({
             "climbed": result.climbed[engine],
             "landed": result.landed[engine],
             "way": short(result.way[engine]),
-        })
+        });
+        add_endings(&mut of, &result.endings[engine]);
+        of
     };
     json!({
         "type": "suite",
         "file": file.display().to_string(),
-        "suite": MUJOCO,
+        "suite": result.judge.name,
         "version": version,
         "trials": result.trials,
         "here": of(0),
@@ -201,6 +207,24 @@ fn mujoco_line(file: &Path, result: &MujocoResult, version: &str, matches: bool)
         "kept": short(result.kept),
         "matches": matches,
     })
+}
+
+/// Makes the table of results, and below it the one of how the trials ended.
+fn tables(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
+    let mut rows = Vec::new();
+    for ExamRow { name, results, judged } in champions {
+        let mut add = |of: &'static str, endings| rows.push((name.clone(), of, endings));
+        results.iter().for_each(|result| add(result.suite.choice().name, &result.endings));
+        for (number, JudgeResult { judge, endings: [here, there], .. }) in judged.iter().enumerate()
+        {
+            // All judges compare with equal trials in this program, which therefore have one row.
+            if number == 0 {
+                add("here", here);
+            }
+            add(judge.title, there);
+        }
+    }
+    format!("{}\n{}", table(suites, champions), endings_table(&rows))
 }
 
 /// Makes a Markdown table with a row for each champion. A suite shows the landings of all trials; the step rates show the share of
@@ -226,13 +250,17 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
     if shows_classes {
         head.extend(StairsClass::names().into_iter().map(str::to_owned));
     }
-    if champions.iter().any(|row| row.in_mujoco.is_some()) {
+    // All judges compare with equal trials in this program, which therefore have one pair of columns.
+    let judges = champions.first().map_or(&[][..], |row| &row.judged).iter().map(|of| of.judge);
+    for (number, title) in judges.map(|judge| judge.title).enumerate() {
         let steps = format!("{CLIMBED_STEPS} steps");
-        head.push(format!("{steps} here"));
-        head.push(format!("{steps} in MuJoCo"));
-        head.extend(["way here", "way in MuJoCo", "kept in MuJoCo"].map(str::to_owned));
+        if number == 0 {
+            head.extend([format!("{steps} here"), "way here".to_owned()]);
+        }
+        head.push(format!("{steps} in {title}"));
+        head.extend(["way", "kept"].map(|what| format!("{what} in {title}")));
     }
-    let row = |ExamRow { name, results, in_mujoco }: &ExamRow| {
+    let row = |ExamRow { name, results, judged }: &ExamRow| {
         let mut cells = vec![name.clone()];
         for suite in suites {
             match results.iter().find(|result| result.suite == *suite) {
@@ -260,9 +288,12 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
                 }
             }
         }
-        if let Some(MujocoResult { trials, climbed, way, kept, .. }) = in_mujoco {
-            cells.extend(climbed.map(|climbed| format!("{climbed} of {trials}")));
-            cells.extend([way[0], way[1], *kept].map(|share| format!("{share:.2}")));
+        for (number, JudgeResult { trials, climbed, way, kept, .. }) in judged.iter().enumerate() {
+            let [here, there] = climbed.map(|climbed| format!("{climbed} of {trials}"));
+            if number == 0 {
+                cells.extend([here, format!("{:.2}", way[0])]);
+            }
+            cells.extend([there, format!("{:.2}", way[1]), format!("{kept:.2}")]);
         }
         cells
     };
@@ -271,112 +302,4 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use snakes_core::save::shipped_champion;
-
-    #[test]
-    fn r10_a_named_suite_that_says_nothing_of_the_champions_is_refused() {
-        let champions = [shipped_champion().expect("well formed")];
-        let checked = |names: &[&str]| {
-            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-            let (suites, _) = asked(&names).expect("suites");
-            check_suites(&names, &suites, &champions).map_err(|error| error.to_string())
-        };
-        assert_eq!(checked(&[]), Ok(()), "usual suites that say nothing are left out");
-        assert_eq!(checked(&["stairs", "step-rate"]), Ok(()));
-        let message = checked(&["stairs", "lesion"]).expect_err("a gait has no senses");
-        let expected = "--suite is lesion; allowed: trials, step-rate, stairs, surprise, shove, held-out, engine for \
-                        these champions";
-        assert_eq!(message, expected);
-    }
-
-    fn result(suite: ExamSuite, each: &[(&str, f32)]) -> SuiteResult {
-        SuiteResult {
-            suite,
-            trials: 100,
-            landed: 97,
-            disqualified: 0,
-            median_steps: 10.0,
-            kept: 0.7,
-            each: each.iter().map(|&(label, kept)| (label.to_owned(), kept)).collect(),
-        }
-    }
-
-    #[test]
-    fn the_table_has_a_row_for_each_champion_and_a_column_for_each_step_rate() {
-        let suites = [ExamSuite::Trials, ExamSuite::StepRate];
-        let results = || {
-            let rates = [("60 Hz", 1.0), ("240 Hz", 0.7)];
-            vec![result(ExamSuite::Trials, &[]), result(ExamSuite::StepRate, &rates)]
-        };
-        let text = table(&suites, &["climber", "b"].map(|name| row(name, results(), None)));
-        let expected = "\
-| champion |    trials | 60 Hz | 240 Hz |
-|:---------|----------:|------:|-------:|
-| climber  | 97 of 100 |  1.00 |   0.70 |
-| b        | 97 of 100 |  1.00 |   0.70 |
-";
-        assert_eq!(text, expected);
-    }
-
-    fn row(name: &str, results: Vec<SuiteResult>, in_mujoco: Option<MujocoResult>) -> ExamRow {
-        ExamRow { name: name.to_owned(), results, in_mujoco }
-    }
-
-    #[test]
-    fn held_out_stairs_have_an_interval_and_alone_a_column_for_each_class() {
-        let classes = [("equal", 0.6), ("irregular", 1.0), ("house", 0.0), ("nosing", 0.2)];
-        let result =
-            || SuiteResult { trials: 60, landed: 27, ..result(ExamSuite::HeldOut, &classes) };
-        let row = || row("climber", vec![result()], None);
-        let alone = table(&[ExamSuite::HeldOut], &[row()]);
-        let last = alone.lines().last().expect("a row");
-        for cell in ["27 of 60 (0.33–0.58)", "9 of 15 (0.36–0.80)", "0 of 15 (0.00–0.20)"] {
-            assert!(last.contains(cell), "{cell} in {last}");
-        }
-        let among = table(&[ExamSuite::Trials, ExamSuite::HeldOut], &[row()]);
-        assert!(among.contains("27 of 60 (0.33–0.58)") && !among.contains("of 15"), "{among}");
-    }
-
-    #[test]
-    fn mujoco_adds_columns_for_both_engines() {
-        let result = MujocoResult {
-            trials: 20,
-            climbed: [20, 7],
-            landed: [19, 0],
-            way: [1.0, 0.45],
-            kept: 0.5,
-        };
-        let text = table(&[], &[row("climber", Vec::new(), Some(result))]);
-        let expected = "\
-| champion | 3 steps here | 3 steps in MuJoCo | way here | way in MuJoCo | kept in MuJoCo |
-|:---------|-------------:|------------------:|---------:|--------------:|---------------:|
-| climber  |     20 of 20 |           7 of 20 |     1.00 |          0.45 |           0.50 |
-";
-        assert_eq!(text, expected);
-    }
-
-    #[test]
-    fn mujoco_is_examined_only_if_it_is_named() {
-        let names =
-            |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
-        assert_eq!(asked(&[]), Ok((ExamSuite::USUAL.to_vec(), false)));
-        assert_eq!(asked(&names(&["mujoco"])), Ok((Vec::new(), true)));
-        assert_eq!(asked(&names(&["mujoco", "shove"])), Ok((vec![ExamSuite::Shove], true)));
-        let error = asked(&names(&["stars"])).expect_err("unknown").to_string();
-        assert!(error.ends_with(", mujoco"), "{error}");
-    }
-
-    #[test]
-    fn an_unknown_suite_is_refused_with_the_known_ones() {
-        let error =
-            suites_named("--suite", &["stars".to_owned()]).expect_err("unknown").to_string();
-        assert!(error.contains("\"stars\"") && error.contains("step-rate, stairs"), "{error}");
-        let twice = ["shove", "trials", "shove"].map(str::to_owned);
-        assert_eq!(
-            suites_named("--suite", &twice).expect("known"),
-            [ExamSuite::Trials, ExamSuite::Shove]
-        );
-    }
-}
+mod tests;

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{ExportArgs, FPS, FilmArgs, SPEED, number_if, size};
+use super::args::{ExportArgs, FPS, FilmArgs, GIF_MB, SPEED, number_if, size};
 use super::error::CliError;
 use super::replay::{champions_to_draw, longest_s};
 use crate::studio::film::{FilmOrder, FilmPart, check_film_size, film};
 use snakes_core::check::Invalid;
 use snakes_core::save::{LoadedChampion, load_run};
-use snakes_lab::export::film::{GIF_FPS, frame_folder_of};
+use snakes_lab::export::film::{GIF_FPS, MOST_MB, frame_folder_of};
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
 /// Maximum width and height of frames that common graphics drivers draw and players show, in pixels.
@@ -38,6 +38,16 @@ pub fn ordered(
     let (fps, default_fps) = if is_gif { (GIF_FPS, 20) } else { (FPS, 30) };
     let fps = number_if("--fps", &flags.fps, fps)?;
     let speed = number_if("--speed", &flags.speed, SPEED)?;
+    let most_mb = number_if("--most-mb", &flags.most_mb, GIF_MB)?;
+    let is_fixed = flags.size.is_some() && flags.fps.is_some();
+    if most_mb.is_some() && (is_fixed || !is_gif) {
+        let with = match is_gif {
+            true => "both --size and --fps".to_owned(),
+            false => format!(".{}", format.info().ending),
+        };
+        let problem = format!("--most-mb has no effect with {with} (see snakes export --help)");
+        return Err(CliError::Usage(problem));
+    }
     let parts = parts(wanted, format)?;
     let [start_s, end_s] =
         moments(flags, longest_s(parts.iter().flat_map(|part| &part.champions)))?;
@@ -48,12 +58,11 @@ pub fn ordered(
         speed: speed.unwrap_or(1.0),
         fps: fps.unwrap_or(default_fps),
         size,
+        most_bytes: (most_mb.unwrap_or(MOST_MB) * 1.0e6) as u64,
         may_be_smaller: is_gif && flags.size.is_none(),
         may_be_slower: is_gif && flags.fps.is_none(),
         ends_with_climb: is_gif && flags.end.is_none(),
-        camera: flags.camera()?,
-        theme: flags.theme()?,
-        overlays: flags.overlays()?,
+        look: flags.look()?,
         has_captions: !flags.no_captions,
     };
     Ok(OrderedFilm { order, format, path: path.to_owned() })

@@ -7,6 +7,7 @@ mod bench;
 mod body;
 #[cfg(feature = "cluster")]
 mod cluster;
+mod endings;
 mod error;
 mod evaluators;
 mod exam;

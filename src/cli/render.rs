@@ -27,9 +27,7 @@ pub fn draw(wanted: &ExportArgs, at: &str, path: &Path) -> Result<(), CliError> 
     let scene = RenderedScene {
         at_s,
         size: size("--size", film.size.as_deref().unwrap_or(SIZE), (64, 64), LARGEST_PIXELS)?,
-        camera: film.camera()?,
-        theme: film.theme()?,
-        overlays: film.overlays()?,
+        look: film.look()?,
         champions,
     };
     let (mut picture, tags) = render(&scene)?;

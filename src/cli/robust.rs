@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::args::{Args, PerturbationArgs, number_if};
+use super::endings::{add_endings, endings_table};
 use super::error::CliError;
 use super::evaluators::{evaluator, trusted};
 use super::output::{cancel_on_interrupt, print, print_json, print_line};
-use super::replay::equals_record;
+use super::replay::{equals_record, name_of};
 use snakes_core::save::{SaveError, load_champion};
 use snakes_core::score::PerturbationRange;
 use snakes_lab::run::headless::HeadlessError;
@@ -61,7 +62,9 @@ fn print_shares(
                 "trials": found.trials, "disqualified": found.disqualified, "matches": matches,
             }))?;
         }
-        return Ok(());
+        let mut line = json!({"type": "endings", "file": name, "trials": found.trials});
+        add_endings(&mut line, &found.endings);
+        return print_json(&line);
     }
     let PerturbationRange { friction, rise, density, start_m, turn_deg, .. } = range;
     print_line(&format!(
@@ -85,7 +88,7 @@ fn print_shares(
             percent(most)
         );
     }
-    print(&text)
+    print(&format!("{text}\n{}", endings_table(&[(name_of(file), "trials", &found.endings)])))
 }
 
 fn shares(found: &Robustness) -> impl Iterator<Item = (u32, Share)> + '_ {

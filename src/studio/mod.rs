@@ -35,7 +35,6 @@ use app::ui_dump::UiDumpFile;
 use stage::opening::OpeningChampions;
 use state::current_run::CurrentRun;
 use state::following::Following;
-use state::options::OpenedComparison;
 use state::turns::Turns;
 use ui::notifications::Notices;
 use workspace::Workspace;
@@ -47,6 +46,7 @@ pub use failure::variables::correct as correct_variables;
 pub use pictures::{figures, film, render};
 pub use stage::MAX_LANES;
 pub use state::options::Options;
+pub use state::shares::StageLook;
 pub use ui::theme::Theme;
 
 /// Name of the built-in champion.
@@ -98,7 +98,7 @@ pub fn run(options: Options) -> Result<(), StudioError> {
         // If the studio was opened with champions, they stay on the stage; otherwise it follows the run.
         .insert_resource(if has_champions { Following::default() } else { Following::from_start() })
         .insert_resource(Turns::new(has_champions))
-        .insert_resource(OpenedComparison(options.comparison.clone()))
+        .insert_resource(options)
         .insert_resource(run)
         .add_plugins((
             schedule::plugin,

@@ -40,6 +40,7 @@ fn json_lines_have_the_documented_fields() {
                 "crashed",
                 "disqualified",
                 "elapsed_s",
+                "endings",
                 "evaluations",
                 "first_landing",
                 "generation",
@@ -263,12 +264,16 @@ fn robustness_prints_a_share_with_its_interval_for_each_step() {
         text.contains("first-climber.ron: 20 trials from seed 1: friction ±20 %, rise ±10 %"),
         "{text}"
     );
-    assert_eq!(text.lines().filter(|line| line.contains(" to ")).count(), 10, "{text}");
+    let is_share = |line: &&str| line.contains(" to ") && line.ends_with(" %");
+    assert_eq!(text.lines().filter(is_share).count(), 10, "{text}");
+    assert!(text.contains("| champion      | suite  |"), "{text}");
     let still = "--off-friction 0 --off-rise 0 --off-start 0 --off-turn 0";
     let lines = json_lines(folder.path(), &format!("exam {save} --trials 3 {still} --json"));
     assert_eq!(lines[0]["share"], json!(1.0));
     assert_eq!(lines[9]["disqualified"], json!(0));
     assert_eq!(lines[9]["matches"], json!(true), "the record is as it was written");
+    assert_eq!((&lines[10]["type"], &lines[10]["trials"]), (&json!("endings"), &json!(3)));
+    assert_eq!(lines[10]["endings"][0]["trials"], json!(3), "all end alike: {}", lines[10]);
     let output = run(folder.path(), &format!("exam {save} --trials 3 --off-rise 2"));
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8_lossy(&output.stderr);

@@ -114,7 +114,7 @@ fn a_typed_seed_starts_another_run() {
     let arguments = format!("replay {REPORTS_CLIMBER} --preset quick");
     let Some(studio) = Studio::open("seed", &arguments) else { return };
     studio.wait_for_title("seed 1 - 4 of 4 generations, finished");
-    studio.fold("How it learns");
+    studio.fold("Method of evolution");
     studio.type_into("Seed", "77");
     // Stage shortcuts must ignore text that is typed into a field, so the key for generation 7 must not show that generation.
     assert!(studio.title().ends_with("showing first-climber"), "{}", studio.title());

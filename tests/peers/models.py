@@ -299,6 +299,17 @@ def urdf(checks, model, expected):
     checks.near("URDF: places at the start", centres, [limb["at_m"] for limb in expected["limbs"]], PLACE_M)
 
 
+def finish(checks, engine, bodies):
+    """Prints the greatest differences and the failures, and returns the exit status."""
+    print(f"{engine}, {bodies} bodies; greatest differences:")
+    for what, off in checks.worst.items():
+        print(f"  {what}: {off:.3g}")
+    for failure in checks.failures:
+        print(failure)
+    print(f"{len(checks.failures)} failures")
+    return 1 if checks.failures or not bodies else 0
+
+
 def main(folder):
     checks = Checks()
     descriptions = sorted(pathlib.Path(folder).glob("*.json"))
@@ -326,13 +337,7 @@ def main(folder):
         swing = path.with_name(f"{path.stem}-pendulum.xml").read_text(encoding="utf-8")
         pendulum(checks, swing, expected)
         urdf(checks, freed(path.with_suffix(".urdf").read_text(encoding="utf-8")), expected)
-    print(f"MuJoCo {mujoco.__version__}, {len(descriptions)} bodies; greatest differences:")
-    for what, off in checks.worst.items():
-        print(f"  {what}: {off:.3g}")
-    for failure in checks.failures:
-        print(failure)
-    print(f"{len(checks.failures)} failures")
-    return 1 if checks.failures or not descriptions else 0
+    return finish(checks, f"MuJoCo {mujoco.__version__}", len(descriptions))
 
 
 if __name__ == "__main__":

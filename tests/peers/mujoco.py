@@ -1,16 +1,6 @@
 """Plays champions of Snakes & Stairs in MuJoCo.
 
-Without arguments it is the partner of `snakes exam FILE --suite mujoco`, which starts it. Each line on standard input is
-a JSON object, and so is each answer on standard output:
-
-    (start)                                             -> {"mujoco": "3.3.0"}
-    {"model": MJCF, "substeps": 2, "air_per_s": 2.0}    -> {"limbs": [...]}
-    {"torques": [[bend, twist], ...]}                   -> {"limbs": [...]}, after one step of control,
-                                                           or "broken", if MuJoCo cannot go on
-
-A limb, or a part of a soft one, is [x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz, touches, fx, fy, fz]: pose, velocity and angular velocity of
-its centre in the world, and the force of ground and stairs on it, in m, rad, s and N. The controller runs in `snakes`,
-so that any of them can be played, also those that sense their surroundings.
+Without arguments it is the partner of `snakes exam FILE --suite mujoco`, which starts it; judge.py has the protocol.
 
     mujoco.py MODEL.xml MOTION.csv PICTURE.png [SECOND ...]
 
@@ -18,10 +8,11 @@ draws the recorded motion of a champion (`snakes export CHAMPION -o MOTION.csv`)
 the other. Without a screen, set MUJOCO_GL=egl or MUJOCO_GL=osmesa.
 """
 
-import json
 import math
 import os
 import sys
+
+from judge import missing, numbers, serve
 
 # This file has the name of the package that it needs.
 _here = os.path.dirname(os.path.abspath(__file__)) if "__file__" in globals() else os.getcwd()
@@ -33,29 +24,29 @@ def limb_bodies(mujoco, model):
     one branch of a body to its end before the next."""
     names = [model.body(index).name for index in range(model.nbody)]
     limbs = [index for index, name in enumerate(names) if name.startswith("limb ")]
-    return sorted(limbs, key=lambda index: [int(word) for word in names[index].split() if word.isdigit()])
+    return sorted(limbs, key=lambda index: numbers(names[index]))
 
 
 class World:
     """A champion's body on its stairs."""
 
-    def __init__(self, mujoco, numpy, text, substeps, air_per_s):
+    def __init__(self, mujoco, numpy, order):
         self.mujoco, self.numpy = mujoco, numpy
-        self.model = mujoco.MjModel.from_xml_string(text)
+        self.model = mujoco.MjModel.from_xml_string(order["model"])
         self.data = mujoco.MjData(self.model)
         self.limbs = limb_bodies(mujoco, self.model)
         # For each joint the places in that list of what it connects: a soft limb is several bodies.
         places = {body: place for place, body in enumerate(self.limbs)}
         names = [self.model.joint(hinge).name for hinge in range(self.model.njnt)]
         bends = [hinge for hinge, name in enumerate(names) if name.startswith("bend ")]
-        rears = [self.model.jnt_bodyid[hinge] for hinge in sorted(bends, key=lambda hinge: int(names[hinge].split()[1]))]
+        rears = [self.model.jnt_bodyid[hinge] for hinge in sorted(bends, key=lambda hinge: numbers(names[hinge]))]
         # With the rotation of each joint's axes against the limb in front of it.
         self.joints = [(places[self.model.body_parentid[rear]], places[rear], self.turn(rear)) for rear in rears]
         if self.model.nkey:
             mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
-        self.substeps = substeps
+        self.substeps = order["substeps"]
         # Share of the angular momentum that the air takes in a substep.
-        self.air = -math.expm1(-air_per_s * self.model.opt.timestep) / self.model.opt.timestep
+        self.air = -math.expm1(-order["air_per_s"] * self.model.opt.timestep) / self.model.opt.timestep
         self.look()
 
     def turn(self, body):
@@ -123,7 +114,7 @@ class World:
         return any(self.data.warning[kind].number > 0 for kind in kinds)
 
     def state(self):
-        """The limbs, as the description of this file says."""
+        """The limbs, as judge.py describes them."""
         forces, rows = self.forces(), []
         for body in self.limbs:
             w, x, y, z = self.data.xquat[body]
@@ -132,26 +123,6 @@ class World:
             touch = [0.0] * 4 if force is None else [1.0, *force]
             rows.append([*self.data.xpos[body], x, y, z, w, *velocity, *spin, *touch])
         return rows
-
-
-def serve(mujoco, numpy):
-    """Answers line by line until standard input ends."""
-
-    def answer(value):
-        print(json.dumps(value), flush=True)
-
-    answer({"mujoco": mujoco.__version__})
-    world = None
-    for line in sys.stdin:
-        order = json.loads(line)
-        if "model" in order:
-            world = World(mujoco, numpy, order["model"], order["substeps"], order["air_per_s"])
-        else:
-            world.step(order["torques"])
-        if world.is_broken():
-            answer("broken")
-        else:
-            answer({"limbs": [[float(number) for number in limb] for limb in world.state()]})
 
 
 def draw(mujoco, numpy, arguments):
@@ -191,17 +162,10 @@ def main():
         import mujoco
         import numpy
     except ImportError as error:
-        print(json.dumps({"missing": str(error)}), flush=True)
-        return 1
+        return missing(error)
     if len(sys.argv) > 1:
-        draw(mujoco, numpy, sys.argv[1:])
-    else:
-        try:
-            serve(mujoco, numpy)
-        except Exception as error:  # The partner reads one line, whatever went wrong.
-            print(json.dumps({"error": f"{type(error).__name__}: {error}"}), flush=True)
-            return 1
-    return 0
+        return draw(mujoco, numpy, sys.argv[1:])
+    return serve(mujoco.__version__, lambda order: World(mujoco, numpy, order))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,19 @@
 // Recorded poses: unpacked once, and interpolated at any moment.
 
-function bytesOf(text) { return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)); }
+// The digit that each letter stands for: the visible ones of ASCII without those that mean something in a page.
+const DIGITS = new Uint8Array(128);
+[...Array(94).keys()].map((letter) => letter + 33).filter((code) => !"\"'<>&\\`{}".includes(String.fromCharCode(code))).forEach((code, digit) => { DIGITS[code] = digit; });
+
+// The bytes of a text in base 85: four of each five letters, or one fewer than letters of the last ones.
+function bytesOf(text) {
+  const bytes = new Uint8Array(Math.floor(text.length * 4 / 5));
+  for (let from = 0, at = 0; from < text.length; from += 5) {
+    let number = 0;
+    for (let letter = from; letter < from + 5; letter++) number = number * 85 + (letter < text.length ? DIGITS[text.charCodeAt(letter)] : 84);
+    for (let shift = 24; shift >= 0 && at < bytes.length; shift -= 8) bytes[at++] = number >>> shift;
+  }
+  return bytes;
+}
 function numbersOf(text) { return new Int16Array(bytesOf(text).buffer); }
 
 // A champion of the page's data, with its numbers unpacked.

@@ -36,6 +36,12 @@ impl Invalid {
     }
 }
 
+impl From<Invalid> for String {
+    fn from(error: Invalid) -> Self {
+        error.to_string()
+    }
+}
+
 /// Digits of the longest whole number, 2⁶⁴ - 1.
 const MOST_DIGITS: usize = 20;
 

@@ -48,6 +48,8 @@ pub enum Purpose {
     Pair = 17,
     /// Drawing a staircase from a seed in the editor.
     StairsDice = 18,
+    /// Drawing the faults of a snake's drives, and pushes from the side.
+    Drives = 19,
 }
 
 /// Returns the stream of random numbers for one purpose of one individual of one generation.

@@ -8,7 +8,7 @@ use super::flags::CommandLine;
 use snakes_core::save::{THEMES, built_in_stairs_names, shipped_preset_names};
 use snakes_core::schema::Choices;
 use snakes_core::score::{ExamSuite, Fitness};
-use snakes_lab::run::mujoco::MUJOCO;
+use snakes_lab::run::judge::JUDGES;
 
 /// Returns the completions of the program for a shell: its subcommands, the flags of each, and the names that flags take. Because
 /// `--preset` offers names, some shells do not complete the path of a preset file for it.
@@ -23,8 +23,9 @@ pub fn completions(shell: Shell) -> String {
     ] {
         command = with_names(command, flag, &names);
     }
-    let with_mujoco = [ExamSuite::names(), vec![MUJOCO]].concat();
-    command = command.mut_subcommand("exam", |exam| with_names(exam, "suite", &with_mujoco));
+    let judges = JUDGES.iter().map(|judge| judge.name);
+    let with_judges: Vec<_> = ExamSuite::names().into_iter().chain(judges).collect();
+    command = command.mut_subcommand("exam", |exam| with_names(exam, "suite", &with_judges));
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut command, "snakes", &mut text);
     String::from_utf8_lossy(&text).into_owned()
@@ -60,7 +61,7 @@ mod tests {
         let mut names =
             text.lines().filter(|line| line.contains("-l suite ") && line.contains("mujoco"));
         assert!(names.next().is_some_and(|line| line.contains("using_subcommand exam")));
-        assert_eq!(names.next(), None, "studies know no mujoco");
+        assert_eq!(names.next(), None, "studies know no judge");
         assert!(!has("seed") && !has("theme") && !has("nats"), "{of_bench:#?}");
     }
 

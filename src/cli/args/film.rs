@@ -2,19 +2,21 @@
 
 use std::ops::RangeInclusive;
 
+use snakes_lab::export::film::MOST_MB;
+
 #[cfg(feature = "studio")]
 use crate::cli::error::{CliError, of_flag};
 #[cfg(feature = "studio")]
-use crate::studio::{CameraMode, Overlay, Theme};
-#[cfg(feature = "studio")]
-use snakes_core::check::Invalid;
+use crate::studio::{CameraMode, Overlay, StageLook};
 
 /// The flags of pictures and films.
 #[derive(Debug, Default, clap::Args)]
 pub struct FilmArgs {
-    /// Size, in pixels [default: 1280x720; for .gif up to 640x360, so that it has at most 8 MB; with --at 1920x1080]
+    /// Size, in pixels [default: 1280x720; for .gif up to 640x360 (see --most-mb); with --at 1920x1080]
     #[arg(long, value_name = "WIDTHxHEIGHT", help_heading = FILMS)]
     pub size: Option<String>,
+    #[arg(long, value_name = "MB", allow_negative_numbers = true, help_heading = FILMS, help = most_mb_help())]
+    pub most_mb: Option<String>,
     #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = FILMS, help = fps_help())]
     pub fps: Option<String>,
     /// Camera: follow, side or top [default: follow]
@@ -38,7 +40,7 @@ pub struct FilmArgs {
     #[arg(long, value_name = "NAME", help_heading = FILMS)]
     pub theme: Option<String>,
     /// Draw this one moment as a .png file, all champions side by side, in simulated seconds; "end" is the last
-    #[arg(long, value_name = "S", allow_negative_numbers = true, help_heading = FILMS, conflicts_with_all = ["fps", "no_captions", "speed", "start", "end", "story"])]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, help_heading = FILMS, conflicts_with_all = ["fps", "no_captions", "speed", "start", "end", "story", "most_mb"])]
     pub at: Option<String>,
     /// Film the champions of a run's first, middle and last generation in turn; FILES is the run's folder
     #[arg(long, help_heading = FILMS)]
@@ -49,6 +51,8 @@ pub struct FilmArgs {
 const FILMS: &str = "Pictures and films";
 /// Allowed frames per second, except for GIF.
 pub const FPS: RangeInclusive<u32> = 1..=120;
+/// Allowed maximum sizes of a GIF, in MB.
+pub const GIF_MB: RangeInclusive<f64> = 0.5..=100.0;
 /// Allowed speeds, in simulated seconds per second of the film.
 pub const SPEED: RangeInclusive<f64> = 0.1..=16.0;
 
@@ -56,7 +60,15 @@ pub const SPEED: RangeInclusive<f64> = 0.1..=16.0;
 fn fps_help() -> String {
     let (least, most) = FPS.into_inner();
     format!(
-        "Frames per second of a film, {least} to {most}, for .gif up to 50 [default: 30; for .gif up to 20, so that it has at most 8 MB]"
+        "Frames per second of a film, {least} to {most}, for .gif up to 50 [default: 30; for .gif up to 20 (see --most-mb)]"
+    )
+}
+
+/// Returns the help of `--most-mb`.
+fn most_mb_help() -> String {
+    let (least, most) = GIF_MB.into_inner();
+    format!(
+        "Maximum size of a .gif, in MB, {least} to {most} [default: {MOST_MB}]; one of the smallest pictures may have more"
     )
 }
 
@@ -67,24 +79,16 @@ fn speed_help() -> String {
 }
 
 impl FilmArgs {
-    /// Returns the colour theme.
+    /// Returns the look. By default the camera follows the snake, the theme is the light one, and there are no overlays.
     #[cfg(feature = "studio")]
-    pub fn theme(&self) -> Result<Theme, CliError> {
-        let named = self.theme.as_deref().map(str::parse).transpose();
-        Ok(named.map_err(of_flag("--theme"))?.unwrap_or_default())
-    }
-
-    /// Returns the mode of the camera; by default it follows the snake.
-    #[cfg(feature = "studio")]
-    pub fn camera(&self) -> Result<CameraMode, Invalid> {
-        let named = CameraMode::named(self.camera.as_deref().unwrap_or("follow"));
-        named.map_err(of_flag("--camera"))
-    }
-
-    /// Returns the overlays.
-    #[cfg(feature = "studio")]
-    pub fn overlays(&self) -> Result<Vec<Overlay>, Invalid> {
-        let named = self.show.iter().map(|name| Overlay::named(name));
-        named.collect::<Result<_, _>>().map_err(of_flag("--show"))
+    pub fn look(&self) -> Result<StageLook, CliError> {
+        let camera = CameraMode::named(self.camera.as_deref().unwrap_or("follow"));
+        let theme = self.theme.as_deref().map(str::parse).transpose();
+        let overlays = self.show.iter().map(|name| Overlay::named(name));
+        Ok(StageLook {
+            camera: camera.map_err(of_flag("--camera"))?,
+            theme: theme.map_err(of_flag("--theme"))?.unwrap_or_default(),
+            overlays: overlays.collect::<Result<_, _>>().map_err(of_flag("--show"))?,
+        })
     }
 }

@@ -16,7 +16,7 @@ mod values;
 pub use completions::completions;
 pub use export::ExportArgs;
 #[cfg(feature = "studio")]
-pub use film::{FPS, FilmArgs, SPEED};
+pub use film::{FPS, FilmArgs, GIF_MB, SPEED};
 #[cfg(feature = "cluster")]
 pub use groups::CredentialFlags;
 pub use manual::manual;

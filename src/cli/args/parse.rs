@@ -136,7 +136,9 @@ fn setting_tip(error: &clap::Error) -> Option<String> {
     }
     let name = flag.trim_start_matches('-').replace('-', "_");
     let settings = fields(&Settings::default());
-    let mut named = settings.iter().map(|(path, _)| path).filter(|path| {
+    // A flag with the name of a quantity does not mean its variation.
+    let paths = settings.iter().map(|(path, _)| path).filter(|path| !path.contains(".off."));
+    let mut named = paths.filter(|path| {
         let last = path.rsplit('.').next().unwrap_or_default();
         last.strip_prefix(&name).is_some_and(|unit| unit.is_empty() || unit.starts_with('_'))
     });

@@ -6,7 +6,7 @@ use crate::cli::error::of_flag;
 use snakes_core::check::Invalid;
 use snakes_core::schema::{self, Choices};
 use snakes_core::score::{ExamSuite, PerturbationRange};
-use snakes_lab::run::mujoco::{MUJOCO, MUJOCO_SENTENCE};
+use snakes_lab::run::judge::JUDGES;
 
 /// The flags of `snakes exam` that no other command has.
 #[derive(Debug, clap::Args)]
@@ -77,7 +77,9 @@ pub(super) fn suite_help(default: &str) -> String {
     format!("Suite of the exam; may be repeated [default: {default}]. {}", rows.join(" "))
 }
 
-/// Returns the help of `--suite` of `snakes exam`, which offers MuJoCo as a further suite.
+/// Returns the help of `--suite` of `snakes exam`, which offers the judges as further suites.
 fn exam_suite_help() -> String {
-    format!("{} {MUJOCO}: {MUJOCO_SENTENCE}", suite_help("all but engine and mujoco"))
+    let mut help = suite_help("all but engine, mujoco and ode");
+    JUDGES.iter().for_each(|judge| help += &format!(" {}: {}", judge.name, judge.sentence()));
+    help
 }

@@ -13,10 +13,9 @@ use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::modal::Modal;
 use crate::studio::commands::panel::PanelKind;
-use crate::studio::commands::share::ShareCommand;
 use crate::studio::commands::{
     BodyCommand, Command, ExamCommand, LessonCommand, PlanCommand, PlayerCommand, RunCommand,
-    StageCommand, WindowCommand,
+    ShareCommand, StageCommand, WindowCommand,
 };
 use crate::studio::panels::help::tour::highlighted_panel;
 use crate::studio::panels::quit_question::unfinished;
@@ -51,7 +50,7 @@ pub(super) fn apply(
     waiting.extend(commands.read().cloned());
     while let Some(command) = &waiting.pop_front() {
         let before = studio.run.next_plan().clone();
-        let left = studio.stage.scene(command, &studio.view.rig);
+        let left = studio.stage.scene(&studio.view.rig);
         let frames = studio.frames();
         let done = studio.execute(command);
         let frames = (frames, studio.frames());
@@ -136,17 +135,19 @@ impl StudioParams<'_, '_> {
             Command::Library(command) => {
                 stage.present_others(library.apply(command, history, notices)?, notices);
             }
-            Command::Share(ShareCommand::Ask(format)) => {
+            Command::Share(ShareCommand::Ask(format, size)) => {
                 // The number of champions is checked before the user chooses a file.
-                refuse_number(*format, stage.champions_to_share().len())?;
-                let ask = FileCommand::Ask(FileQuestion::Share(*format, stage.name_for_file()));
+                let champions = stage.champions_to_share();
+                refuse_number(*format, champions.len())?;
+                let number = self.shares.ask(champions, self.view.look(), *size);
+                let name = stage.name_for_file();
+                let ask = FileCommand::Ask(FileQuestion::Share(*format, name, number));
                 self.files.apply(&ask, library, history, notices)?;
             }
             Command::Share(ShareCommand::Cancel) => self.shares.cancel()?,
-            Command::File(FileCommand::Answer(FileQuestion::Share(format, _), paths)) => {
+            Command::File(FileCommand::Answer(FileQuestion::Share(format, _, number), paths)) => {
                 if let Some(path) = paths.first() {
-                    let (champions, look) = (stage.champions_to_share(), self.view.look());
-                    self.shares.begin(*format, path, &champions, &look)?;
+                    self.shares.begin_asked(*format, path, *number)?;
                 }
             }
             Command::File(command) => {

@@ -7,8 +7,7 @@ use bevy_egui::helpers::{bevy_to_egui_key, bevy_to_egui_physical_key};
 use bevy_egui::input::EguiWantsInput;
 
 use crate::studio::commands::actions::{Situation, of_keys};
-use crate::studio::commands::turn::Turn;
-use crate::studio::commands::{Command, PlayerCommand, StageCommand, WindowCommand};
+use crate::studio::commands::{Command, PlayerCommand, StageCommand, Turn, WindowCommand};
 use crate::studio::panels::situation::CurrentSituation;
 use crate::studio::schedule::FrameSet;
 use crate::studio::ui::viewport::StageArea;

@@ -1,7 +1,10 @@
 //! Preferences of the user, kept across restarts.
 
+use std::time::Duration;
+
 use bevy::ecs::system::SystemParam;
 use bevy::prelude::*;
+use bevy::time::common_conditions::on_real_timer;
 use bevy::window::PrimaryWindow;
 
 use crate::studio::commands::overlay::Overlay;
@@ -29,12 +32,10 @@ pub(crate) struct StoredPreferences {
     seen: Preferences,
     /// Error message from reading the file, until it is displayed.
     problem: Option<String>,
-    /// Time of the last check for changes, in seconds.
-    polled_s: f32,
 }
 
-/// Interval between checks for changed preferences, in seconds.
-const POLL_S: f32 = 0.5;
+/// Interval between checks for changed preferences.
+const POLL: Duration = Duration::from_millis(500);
 
 impl StoredPreferences {
     /// Reads the preferences. If the file is unreadable, uses the defaults and renames the file as a backup.
@@ -50,12 +51,13 @@ impl StoredPreferences {
             }
         };
         let file = file.clone();
-        Self { file, seen: stored.clone(), stored, problem, polled_s: 0.0 }
+        Self { file, seen: stored.clone(), stored, problem }
     }
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(PostStartup, restore).add_systems(Last, remember);
+    let is_time = on_real_timer(POLL).or_else(on_message::<AppExit>);
+    app.add_systems(PostStartup, restore).add_systems(Last, remember.run_if(is_time));
 }
 
 /// Current state of everything that preferences cover.
@@ -79,30 +81,18 @@ fn restore(
     mut notices: ResMut<Notices>,
 ) {
     notices.problems(remembered.problem.take());
-    let Preferences {
-        ui_scale,
-        layout,
-        overlays,
-        speed,
-        loops,
-        quality,
-        recent,
-        unfolded,
-        finished_lessons,
-        server,
-        ..
-    } = remembered.stored.clone();
-    chosen.files.recent = RecentFiles::from_texts(&recent);
-    chosen.machines.remember(&server);
-    chosen.workspace.unfolded = unfolded.into_iter().collect();
-    chosen.lessons.finished = finished_lessons.into_iter().map(present_title).collect();
-    chosen.workspace.scale.choose(ui_scale);
-    chosen.workspace.layout = Layout::from_text(&layout);
-    let shown = Overlay::ALL.into_iter().filter(|of| overlays.iter().any(|name| name == of.name()));
-    shown.for_each(|overlay| chosen.overlays.show(overlay));
-    chosen.playback.set_speed(speed);
-    chosen.playback.loops = loops;
-    chosen.quality.chosen = quality.and_then(|name| Quality::named(&name));
+    let stored = remembered.stored.clone();
+    chosen.files.recent = RecentFiles::from_texts(&stored.recent);
+    chosen.machines.remember(&stored.server);
+    chosen.workspace.unfolded = stored.unfolded.into_iter().collect();
+    chosen.lessons.finished = stored.finished_lessons.into_iter().map(present_title).collect();
+    chosen.workspace.scale.chosen = stored.ui_scale;
+    chosen.workspace.layout = Layout::from_text(&stored.layout);
+    let is_shown = |of: &Overlay| stored.overlays.iter().any(|name| name == of.name());
+    chosen.overlays.extend(Overlay::ALL.into_iter().filter(is_shown));
+    chosen.playback.set_speed(stored.speed);
+    chosen.playback.loops = stored.loops;
+    chosen.quality.chosen = stored.quality.and_then(|name| Quality::named(&name));
 }
 
 /// Writes changed preferences when they have settled, and when the window closes.
@@ -111,13 +101,8 @@ fn remember(
     chosen: Chosen,
     mut notices: ResMut<Notices>,
     mut exits: MessageReader<AppExit>,
-    time: Res<Time<Real>>,
 ) {
     let ends = exits.read().next().is_some();
-    if !ends && time.elapsed_secs() - remembered.polled_s < POLL_S {
-        return;
-    }
-    remembered.polled_s = time.elapsed_secs();
     let now = now(&remembered, &chosen);
     let rests = now == remembered.seen;
     remembered.seen = now.clone();
@@ -139,13 +124,12 @@ fn now(remembered: &StoredPreferences, chosen: &Chosen) -> Preferences {
     let window_size = chosen.window.iter().next().map(size);
     // In the presenting mode, the window's size and the loop are not the user's choice.
     let presents = chosen.workspace.is_presenting;
-    let shown = Overlay::ALL.into_iter().filter(|overlay| chosen.overlays.shows(*overlay));
     let now = Preferences {
         theme: chosen.theme.name().to_owned(),
-        ui_scale: chosen.workspace.scale.chosen(),
+        ui_scale: chosen.workspace.scale.chosen,
         window_size: window_size.filter(|_| !presents).or(before.window_size),
         layout: chosen.workspace.layout.to_text(),
-        overlays: shown.map(|overlay| overlay.name().to_owned()).collect(),
+        overlays: chosen.overlays.iter().map(|overlay| overlay.name().to_owned()).collect(),
         speed: chosen.playback.speed(),
         loops: if presents { before.loops } else { chosen.playback.loops },
         quality: chosen.quality.chosen.map(|quality| quality.name().to_owned()),
@@ -181,11 +165,11 @@ mod tests {
         let file = PreferencesFile::at(&folder.path().join("studio.ron"));
         let mut first = app(&file);
         let world = first.world_mut();
-        world.resource_mut::<Workspace>().scale.choose(1.5);
+        world.resource_mut::<Workspace>().scale.chosen = 1.5;
         world.resource_mut::<Workspace>().awaits_tour = false;
         world.resource_mut::<Workspace>().unfolded.insert("Surface".to_owned());
         world.resource_mut::<Lessons>().finished.insert("Friction: how much?".to_owned());
-        world.resource_mut::<Overlays>().toggle(Overlay::Trail);
+        world.resource_mut::<Overlays>().insert(Overlay::Trail);
         world.resource_mut::<StageQuality>().chosen = Some(Quality::Beautiful);
         world.resource_mut::<Playback>().set_speed(0.5);
         *world.resource_mut::<Theme>() = Theme::Dark;
@@ -195,10 +179,10 @@ mod tests {
         world.write_message(AppExit::Success);
         first.update();
         let second = app(&file);
-        assert_eq!(second.world().resource::<Workspace>().scale.chosen(), 1.5);
+        assert_eq!(second.world().resource::<Workspace>().scale.chosen, 1.5);
         assert!(second.world().resource::<Workspace>().unfolded.contains("Surface"));
         assert_eq!(second.world().resource::<Lessons>().finished.len(), 1);
-        assert!(second.world().resource::<Overlays>().shows(Overlay::Trail));
+        assert!(second.world().resource::<Overlays>().contains(&Overlay::Trail));
         assert_eq!(second.world().resource::<StageQuality>().chosen, Some(Quality::Beautiful));
         assert_eq!(second.world().resource::<Playback>().speed(), 0.5);
         assert_eq!(second.world().resource::<Files>().recent, recent);

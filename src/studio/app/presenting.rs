@@ -43,7 +43,7 @@ fn present(
     }
     following.repeats = is_presenting;
     turns.set_on(is_presenting);
-    notices.set_quiet(is_presenting);
+    notices.is_quiet = is_presenting;
     if let Some(window_mode) = before.take() {
         window.mode = window_mode;
         return;

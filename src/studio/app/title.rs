@@ -8,7 +8,7 @@ use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
 use crate::studio::stage::staged_champion::ChampionSource;
-use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::state::current_run::CurrentRun;
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, update.in_set(FrameSet::Draw));
@@ -20,12 +20,6 @@ fn update(
     (mode, playback): (Res<StageMode>, Res<Playback>),
     mut window: Single<&mut Window, With<PrimaryWindow>>,
 ) {
-    let status = match run.status() {
-        RunStatus::Ready => "ready",
-        RunStatus::Running => "running",
-        RunStatus::Paused => "paused",
-        RunStatus::Finished => "finished",
-    };
     let first = lanes.iter().min_by_key(|lane| lane.number);
     let shown = match (&*mode, first) {
         (_, None) => "nothing".to_owned(),
@@ -34,7 +28,7 @@ fn update(
             format!("generation {number}, {} snakes", lanes.iter().len())
         }
         (mode, Some(lane)) => {
-            let generation = lane.staged.generation();
+            let generation = lane.staged.champion().origin.generation;
             let what = match lane.staged.source() {
                 ChampionSource::Opened(_) | ChampionSource::Library(_) => {
                     lane.staged.name().to_owned()
@@ -64,10 +58,11 @@ fn update(
     };
     let from = run.founder().map(|name| format!(", from {name}")).unwrap_or_default();
     let title = format!(
-        "Snakes & Stairs - {}, seed {}{from} - {}, {status} - showing {shown}{stopped}",
+        "Snakes & Stairs - {}, seed {}{from} - {}, {} - showing {shown}{stopped}",
         run.preset_in_words(),
         run.plan_now.seed,
         run.generations_in_words(),
+        run.status().name(),
     );
     if window.title != title {
         window.title = title;

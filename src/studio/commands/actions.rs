@@ -11,59 +11,33 @@ use super::modal::Modal;
 use super::overlay::Overlay;
 use super::panel::PanelKind;
 use super::pick::Pick;
-use super::screenshot_area::ScreenshotArea;
-use super::share::ShareCommand;
 use super::{
-    ExamCommand, PlanCommand, PlayerCommand, RunCommand, StageCommand, ViewCommand, WindowCommand,
+    ExamCommand, FilmSize, PlanCommand, PlayerCommand, RunCommand, SMALL_GIF_MB, ScreenshotArea,
+    ShareCommand, StageCommand, ViewCommand, WindowCommand,
 };
+use snakes_core::schema::named_values;
 use snakes_lab::export::ExportFormat;
+use snakes_lab::export::film::MOST_MB;
 
-/// A menu, which is also a group in the list of shortcuts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Menu {
-    /// Menu for files, pictures, and the end of the program.
-    File,
-    /// Menu that writes the champions on the stage to files of other formats.
-    Share,
-    /// Menu for evolution and the choice of champions.
-    Run,
-    /// Menu for undo and redo.
-    Edit,
-    /// Menu for playback.
-    Stage,
-    /// Menu for camera, overlays, theme and size of the panels.
-    View,
-    /// Menu that opens panels.
-    Panels,
-    /// Menu for shortcuts, the command palette and the tour.
-    Help,
-}
-
-impl Menu {
-    /// All menus, in the order of the menu bar.
-    pub const ALL: [Self; 8] = [
-        Self::File,
-        Self::Share,
-        Self::Run,
-        Self::Edit,
-        Self::Stage,
-        Self::View,
-        Self::Panels,
-        Self::Help,
-    ];
-
-    /// Returns the menu's label.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::File => "File",
-            Self::Share => "Share",
-            Self::Run => "Run",
-            Self::Edit => "Edit",
-            Self::Stage => "Stage",
-            Self::View => "View",
-            Self::Panels => "Panels",
-            Self::Help => "Help",
-        }
+named_values! {
+    /// A menu, which is also a group in the list of shortcuts, in the order of the menu bar. Its name is its label.
+    pub enum Menu {
+        /// Menu for files, pictures, and the end of the program.
+        File = "File";
+        /// Menu that writes the champions on the stage to files of other formats.
+        Share = "Share";
+        /// Menu for evolution and the choice of champions.
+        Run = "Run";
+        /// Menu for undo and redo.
+        Edit = "Edit";
+        /// Menu for playback.
+        Stage = "Stage";
+        /// Menu for camera, overlays, theme and size of the panels.
+        View = "View";
+        /// Menu that opens panels.
+        Panels = "Panels";
+        /// Menu for shortcuts, the command palette and the tour.
+        Help = "Help";
     }
 }
 
@@ -135,7 +109,7 @@ impl Action {
             Command::Undo => now.can_undo,
             Command::Redo => now.can_redo,
             Share(ShareCommand::Cancel) => now.is_sharing,
-            Share(ShareCommand::Ask(_)) => !now.is_sharing,
+            Share(ShareCommand::Ask(..)) => !now.is_sharing,
             Run(RunCommand::ShowHash | RunCommand::Extend) => now.is_finished,
             Stage(StageCommand::ToggleFollowEvolution) => !now.is_finished,
             Stage(StageCommand::KeepChange) => now.is_what_if,
@@ -196,7 +170,10 @@ pub(crate) fn actions() -> &'static [Action] {
     static ALL: LazyLock<Vec<Action>> = LazyLock::new(|| {
         let action = |menu, (name, keys, command)| {
             let hint = match command {
-                Share(ShareCommand::Ask(format)) => format.info().sentence,
+                Share(ShareCommand::Ask(_, FilmSize::Small)) => {
+                    "For messages: small pictures, played twice as fast"
+                }
+                Share(ShareCommand::Ask(format, _)) => format.info().sentence,
                 View(ViewCommand::ToggleOverlay(of)) => of.hint(),
                 Window(WindowCommand::ToggleTorques) => {
                     "Torques over the whole trial, below the player"
@@ -241,14 +218,22 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
             ("Quit", &["Ctrl Q"], Command::Quit),
         ],
         Menu::Share => {
-            let mut rows: Vec<ActionRow> =
-                vec![("Cancel writing the file", &[], Share(ShareCommand::Cancel))];
-            rows.extend(ExportFormat::ALL.map(|format| -> ActionRow {
+            let mut rows: Vec<ActionRow> = Vec::new();
+            for format in ExportFormat::ALL {
                 let info = format.info();
+                let is_gif = format == ExportFormat::Gif;
+                let most =
+                    if is_gif { format!(", about {MOST_MB} MB at most") } else { String::new() };
                 // The list of actions is built once, so its leaked names last as long as the program.
-                let name = format!("{} (.{})…", info.title, info.ending).leak();
-                (name, &[], Share(ShareCommand::Ask(format)))
-            }));
+                let name = format!("{}{most} (.{})…", info.title, info.ending).leak();
+                rows.push((name, &[], Share(ShareCommand::Ask(format, FilmSize::Usual))));
+                if is_gif {
+                    let small = Share(ShareCommand::Ask(format, FilmSize::Small));
+                    let name = format!("Small GIF, about {SMALL_GIF_MB} MB at most…").leak();
+                    rows.push((name, &[], small));
+                }
+            }
+            rows.push(("Cancel writing the file", &[], Share(ShareCommand::Cancel)));
             rows
         }
         Menu::Run => vec![
@@ -268,7 +253,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
             ("Whole latest generation", &["I"], Stage(ShowGeneration(None))),
             ("Race generations", &["N"], Stage(RaceGenerations)),
             ("Race best 10 of the latest generation", &["M"], Stage(RaceLeaders(None))),
-            ("Why does it climb? Take away one joint at a time", &[], Stage(RaceKnockOuts)),
+            ("Why does it climb? Copies without one joint or motion", &[], Stage(RaceKnockOuts)),
             ("Race the snake over ten staircases", &[], Stage(RaceStairs)),
             ("Examine the snake on 100 unseen staircases", &[], Exam(ExamCommand::Examine)),
         ],
@@ -312,7 +297,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
             ("Present on the full screen", &["F11", "F5"], Window(WindowCommand::TogglePresenting)),
         ],
         Menu::Panels => {
-            let mut rows = PanelKind::ALL.map(panel).to_vec();
+            let mut rows: Vec<ActionRow> = PanelKind::IN_MENU.iter().copied().map(panel).collect();
             rows.push(("Close panel", &["Ctrl W"], Window(WindowCommand::ClosePanel)));
             rows.push(("Reset layout", &[], Window(WindowCommand::ResetLayout)));
             rows

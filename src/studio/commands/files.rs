@@ -35,6 +35,7 @@ pub(crate) enum FileQuestion {
     Import,
     /// Choose the folder into which to copy these entries.
     Export(Vec<SavePlace>),
-    /// Choose the file of this format for the champions on the stage. The text is a suggested name without an extension.
-    Share(ExportFormat, String),
+    /// Choose the file of this format for the champions on the stage. The text is a suggested name without an
+    /// extension, the number that of the question.
+    Share(ExportFormat, String, u32),
 }

@@ -22,11 +22,11 @@ pub(crate) enum LibraryCommand {
         /// Number of the generation; the first is 1.
         generation: u32,
     },
-    /// Race the champions of these generations of a run. Of many generations, an evenly spaced selection races.
+    /// Race the champions of these generations of a run.
     RaceGenerations {
         /// Folder of the run.
         run: PathBuf,
-        /// Generations of the run that have a champion.
+        /// Generations that have a champion, at most as many as there are lanes.
         generations: Vec<u32>,
     },
     /// Rename a champion's file, or give a run a name of its own.

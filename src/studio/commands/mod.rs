@@ -6,15 +6,13 @@ mod block_size;
 pub mod camera_mode;
 pub mod chart_export;
 pub mod files;
+pub mod hinted;
 pub mod library;
 pub mod modal;
 pub mod overlay;
 pub mod panel;
 pub mod pick;
 pub mod quality;
-pub mod screenshot_area;
-pub mod share;
-pub mod turn;
 
 use std::path::PathBuf;
 
@@ -23,6 +21,7 @@ use bevy::prelude::*;
 use snakes_core::genome::BodyChange;
 use snakes_core::save::library::SavePlace;
 use snakes_core::score::ExamSuite;
+use snakes_lab::export::ExportFormat;
 
 pub(super) use block_size::BlockSize;
 use camera_mode::CameraMode;
@@ -34,9 +33,6 @@ use overlay::Overlay;
 use panel::PanelKind;
 use pick::Pick;
 use quality::Quality;
-use screenshot_area::ScreenshotArea;
-use share::ShareCommand;
-use turn::Turn;
 
 /// A command from a panel, a menu or a key.
 #[derive(Message, Debug, Clone, PartialEq)]
@@ -193,6 +189,17 @@ pub(super) enum StageCommand {
     Focus(usize),
 }
 
+/// A step through the champions that the presenting mode shows one after another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Turn {
+    /// Show the next champion; after the last, show the first.
+    Next,
+    /// Show the previous champion; before the first, show the last.
+    Previous,
+    /// Show the first champion.
+    First,
+}
+
 /// A command to the clock of the stage.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum PlayerCommand {
@@ -243,6 +250,15 @@ pub(super) enum ViewCommand {
     TakePicture(ScreenshotArea),
 }
 
+/// The part of the window to save as a picture.
+#[derive(Message, Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ScreenshotArea {
+    /// Only the stage, without panels.
+    Stage,
+    /// The whole window.
+    Window,
+}
+
 /// A command to the layout of the window.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum WindowCommand {
@@ -284,6 +300,27 @@ pub(super) enum WindowCommand {
     ToggleModal(Modal),
     /// Close the modal view.
     CloseModal,
+}
+
+/// Maximum size of a small GIF, in MB.
+pub(super) const SMALL_GIF_MB: u32 = 2;
+
+/// Length and size of a film.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FilmSize {
+    /// The usual ones of its format.
+    Usual,
+    /// A GIF of about [`SMALL_GIF_MB`] at most, which plays twice as fast.
+    Small,
+}
+
+/// A command about sharing the champions on the stage as a file of another format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ShareCommand {
+    /// Ask where to save a file of this format, and write it.
+    Ask(ExportFormat, FilmSize),
+    /// Cancel the file that is being written.
+    Cancel,
 }
 
 /// A command to the lessons.

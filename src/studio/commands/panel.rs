@@ -2,92 +2,55 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A panel, shown as a tab of the window. Panels can be docked anywhere, except that the stage stays in the main window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum PanelKind {
-    /// Panel with the 3D view and its player.
-    Stage,
-    /// Panel to start, pause and configure evolution.
-    Run,
-    /// Panel for the settings of the world and the snake.
-    World,
-    /// Panel with charts of the run.
-    Charts,
-    /// Panel with the champions of the run's generations.
-    Champions,
-    /// Panel with saved champions and runs.
-    Library,
-    /// Panel with lessons that reproduce findings of the report.
-    Lessons,
-    /// Panel with the senses and the controller of the snake on the stage.
-    Senses,
-    /// Panel for other computers that take part in the evaluations.
-    Machines,
-    /// Panel to edit the blocks of the snake on the stage.
-    Body,
-    /// Panel to edit the stairs of the next run.
-    Stairs,
+use super::hinted::hinted_values;
+
+hinted_values! {
+    /// A panel, shown as a tab of the window. Panels can be docked anywhere, except that the stage stays in the main window. Its name is the
+    /// label of its tab.
+    #[derive(Serialize, Deserialize)]
+    pub enum PanelKind {
+        Stage = "Stage", "The snake on its stairs";
+        Run = "Watch", "Watch evolution, start and pause it";
+        World = "Change", "Change the surface, the snake and the stairs";
+        Lessons = "Learn", "Two-minute experiments";
+        Library = "Library", "All saved champions and runs: replay, race, export";
+        Charts = "Charts", "See how evolution works";
+        Champions = "Champions", "Replay the best of every generation";
+        Senses = "Senses", "What the snake senses, and its controller at work";
+        Machines = "Machines", "Let other computers compute, too";
+        Body = "Body", "The blocks of the snake: change, add and remove them";
+        Stairs = "Stairs", "The stairs of the next run: drag their edges, draw random ones, save them";
+    }
 }
 
 impl PanelKind {
     /// All panels except the stage, in the order of the menu.
-    pub const ALL: [Self; 10] = [
-        Self::Run,
-        Self::World,
-        Self::Lessons,
-        Self::Library,
-        Self::Charts,
-        Self::Champions,
-        Self::Senses,
-        Self::Machines,
-        Self::Body,
-        Self::Stairs,
-    ];
+    pub const IN_MENU: &'static [Self] = Self::ALL.split_at(1).1;
 
     /// Panels of the initial layout, in the order of their tabs. The remaining ones are rarely needed and open on
     /// demand.
-    pub const INITIAL: &'static [Self] = Self::ALL.split_at(4).0;
-
-    /// Returns the label of the tab, the shortcuts, and the panel's purpose.
-    fn words(self) -> (&'static str, &'static [&'static str], &'static str) {
-        match self {
-            Self::Stage => ("Stage", &[], "The snake on its stairs"),
-            Self::Run => ("Watch", &["Ctrl 1"], "Watch evolution, start and pause it"),
-            Self::World => ("Change", &["Ctrl 2"], "Change the surface, the snake and the stairs"),
-            Self::Charts => ("Charts", &["Ctrl 3"], "See how evolution works"),
-            Self::Champions => ("Champions", &["Ctrl 4"], "Replay the best of every generation"),
-            Self::Library => {
-                ("Library", &["Ctrl 5"], "All saved champions and runs: replay, race, export")
-            }
-            Self::Lessons => ("Learn", &["Ctrl 6"], "Two-minute experiments"),
-            Self::Senses => {
-                ("Senses", &["Ctrl 7"], "What the snake senses, and its controller at work")
-            }
-            Self::Machines => ("Machines", &["Ctrl 8"], "Let other computers compute, too"),
-            Self::Body => {
-                ("Body", &["Ctrl 9"], "The blocks of the snake: change, add and remove them")
-            }
-            Self::Stairs => (
-                "Stairs",
-                &["Ctrl T"],
-                "The stairs of the next run: drag their edges, draw random ones, save them",
-            ),
-        }
-    }
-
-    /// Returns the label of the panel's tab.
-    pub fn name(self) -> &'static str {
-        self.words().0
-    }
+    pub const INITIAL: &'static [Self] = Self::IN_MENU.split_at(4).0;
 
     /// Returns the shortcuts that open the panel.
     pub fn keys(self) -> &'static [&'static str] {
-        self.words().1
+        match self {
+            Self::Stage => &[],
+            Self::Run => &["Ctrl 1"],
+            Self::World => &["Ctrl 2"],
+            Self::Lessons => &["Ctrl 6"],
+            Self::Library => &["Ctrl 5"],
+            Self::Charts => &["Ctrl 3"],
+            Self::Champions => &["Ctrl 4"],
+            Self::Senses => &["Ctrl 7"],
+            Self::Machines => &["Ctrl 8"],
+            Self::Body => &["Ctrl 9"],
+            Self::Stairs => &["Ctrl T"],
+        }
     }
 
     /// Returns the tooltip, with the first shortcut if there is one.
-    pub fn hint(self) -> String {
-        let (_, keys, hint) = self.words();
-        keys.first().map_or_else(|| hint.to_owned(), |key| format!("{hint} ({key})"))
+    pub fn hint_with_key(self) -> String {
+        let hint = self.hint();
+        self.keys().first().map_or_else(|| hint.to_owned(), |key| format!("{hint} ({key})"))
     }
 }

@@ -10,12 +10,7 @@ pub(crate) enum Pick {
     /// The champion of this generation of the current run; the first is 1.
     Generation(u32),
     /// A member of the Pareto front of distance and energy.
-    Front {
-        /// Generation that found the member; the first is 1.
-        generation: u32,
-        /// Index of the member in its generation.
-        individual: u32,
-    },
+    Front(IndividualId),
     /// The elite of the archive cell with this index.
     Elite(u32),
     /// The agent paired with these stairs in a run that evolves stairs; the first stairs are 0.

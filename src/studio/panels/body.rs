@@ -52,36 +52,35 @@ const CHANGES: [(BodyChange, &str, &str); 5] = [
 ];
 
 impl BodyPanel {
-    /// Draws the panel and collects the user's commands. `limb` is the selected limb on the stage.
+    /// Draws the panel and sends the user's commands. `limb` is the selected limb on the stage.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
         edited: Option<EditedBody<'_>>,
         lane: Option<&Lane>,
         limb: Option<usize>,
-        commands: &mut Vec<Command>,
     ) {
-        let Some(edited) = edited else { return self.invitation(ui, lane, commands) };
+        let Some(edited) = edited else { return self.invitation(ui, lane) };
         if limb != self.limb {
             self.limb = limb;
             self.block = limb.unwrap_or(self.block);
         }
         self.block = self.block.min(edited.segments.len().saturating_sub(1));
-        self.head(ui, &edited, commands);
+        self.head(ui, &edited);
         if let Some(block) = drawing(ui, &edited.body, Some(self.block)) {
             self.block = block;
         }
         let is_busy = edited.tuning.is_some();
-        ui.add_enabled_ui(!is_busy, |ui| self.block(ui, edited.segments, commands));
+        ui.add_enabled_ui(!is_busy, |ui| self.block(ui, edited.segments));
         budgets(ui, &edited);
         if let Some(reason) = &edited.problem {
             problem(ui, reason);
         }
-        end(ui, &edited, commands);
+        end(ui, &edited);
     }
 
     /// Draws the panel before the body is edited: the body on the stage, and the button that begins to edit it.
-    fn invitation(&mut self, ui: &mut egui::Ui, lane: Option<&Lane>, commands: &mut Vec<Command>) {
+    fn invitation(&mut self, ui: &mut egui::Ui, lane: Option<&Lane>) {
         title(ui, "Body");
         let Some(lane) = lane else {
             return explain(ui, "The blocks of the snake on the stage will appear here.");
@@ -103,35 +102,33 @@ impl BodyPanel {
         );
         let refusal = BodyEditor::refusal(&lane.staged);
         let edit = CommandButton::new("Edit this body", "", Command::Body(BodyCommand::Edit));
-        if edit.unless(refusal.as_deref()).show(ui, commands) {
+        if edit.unless(refusal.as_deref()).show(ui) {
             self.block = 0;
+        }
+        if let Some(reason) = refusal {
+            explain(ui, &format!("Not possible here. {reason}."));
         }
     }
 
     /// Draws the title, and the buttons for undo, redo and closing.
-    fn head(&self, ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
+    fn head(&self, ui: &mut egui::Ui, edited: &EditedBody<'_>) {
         let name = format!("Body of {}", edited.original.name());
         title_and(ui, &name, |ui| {
+            let closes = "Show the original alone. The changes are lost";
             let [can_undo, can_redo] = edited.steps.map(|can| can && edited.tuning.is_none());
             // The buttons are added from right to left.
             for (label, hint, is_on, command) in [
-                (
-                    "Close",
-                    "Show the original alone. The changes are lost",
-                    true,
-                    BodyCommand::Close,
-                ),
+                ("Close", closes, true, BodyCommand::Close),
                 ("Redo", "Redo the latest undone change", can_redo, BodyCommand::Redo),
                 ("Undo", "Undo the latest change of the body", can_undo, BodyCommand::Undo),
             ] {
-                let button = CommandButton::new(label, hint, Command::Body(command));
-                button.only_if(is_on).show(ui, commands);
+                CommandButton::new(label, hint, Command::Body(command)).only_if(is_on).show(ui);
             }
         });
     }
 
     /// Draws the numbers of the selected block, and the changes of structure at the block.
-    fn block(&self, ui: &mut egui::Ui, segments: &[Segment], commands: &mut Vec<Command>) {
+    fn block(&self, ui: &mut egui::Ui, segments: &[Segment]) {
         let block = self.block;
         let Some(segment) = segments.get(block) else { return };
         let what = match block {
@@ -146,86 +143,82 @@ impl BodyPanel {
                 let value = *size.of_mut(&mut segment.clone());
                 let mut value = if is_angle { value.to_degrees() } else { value };
                 ui.label(*label).on_hover_text(*hint);
-                let slider = egui::Slider::new(&mut value, range.clone())
-                    .suffix(*unit)
-                    .clamping(egui::SliderClamping::Edits)
-                    .max_decimals(if is_angle { 1 } else { 2 });
-                let slider = ui.add(slider).on_hover_text(*hint);
-                if named(slider, egui::WidgetType::Slider, label).changed() {
+                let slider = egui::Slider::new(&mut value, range.clone()).suffix(*unit);
+                let slider = slider.max_decimals(if is_angle { 1 } else { 2 });
+                if is_changed(ui, slider, label, hint) {
                     let (size, value) = (*size, if is_angle { value.to_radians() } else { value });
-                    commands.push(Command::Body(BodyCommand::Set { block, size, value }));
+                    Command::Body(BodyCommand::Set { block, size, value }).send(ui);
                 }
                 ui.end_row();
             }
-            softness(ui, block, segment, commands);
+            softness(ui, block, segment);
         });
         let is_last = block + 1 == segments.len();
         ui.horizontal_wrapped(|ui| {
             for (change, label, hint) in CHANGES {
                 let needs_next = matches!(change, BodyChange::Insert | BodyChange::Merge);
                 let command = Command::Body(BodyCommand::Change { block, change });
-                let button = CommandButton::new(label, hint, command);
-                button.only_if(!(is_last && needs_next)).show(ui, commands);
+                CommandButton::new(label, hint, command).only_if(!(is_last && needs_next)).show(ui);
             }
         });
     }
 }
 
+/// Draws a slider, which moves no value that it does not reach. Returns whether the user changed its value.
+fn is_changed(ui: &mut egui::Ui, slider: egui::Slider<'_>, label: &str, hint: &str) -> bool {
+    let slider = ui.add(slider.clamping(egui::SliderClamping::Edits)).on_hover_text(hint);
+    named(slider, egui::WidgetType::Slider, label).changed()
+}
+
 /// Draws the row that shows whether a block is soft, and its Young's modulus.
-fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment, commands: &mut Vec<Command>) {
+fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment) {
     const HINT: &str = "A soft block bends and springs back";
     const MODULUS_HINT: &str =
         "Young's modulus of its material. A block that is too stiff to bend is rigid";
     let mut is_soft = segment.youngs_modulus_pa.is_some();
     if ui.checkbox(&mut is_soft, "Soft").on_hover_text(HINT).clicked() {
         let (size, value) = (BlockSize::Modulus, BlockSize::usual_modulus_pa(segment));
-        commands.push(Command::Body(match is_soft {
+        Command::Body(match is_soft {
             true => BodyCommand::Set { block, size, value },
             false => BodyCommand::MakeRigid { block },
-        }));
+        })
+        .send(ui);
     }
     if let Some(mut value) = segment.youngs_modulus_pa {
-        let slider = egui::Slider::new(&mut value, 1000.0..=100_000.0)
-            .logarithmic(true)
-            .suffix(" Pa")
-            .clamping(egui::SliderClamping::Edits)
-            .max_decimals(0);
-        let slider = ui.add(slider).on_hover_text(MODULUS_HINT);
-        if named(slider, egui::WidgetType::Slider, "Young's modulus").changed() {
+        let slider = egui::Slider::new(&mut value, 1000.0..=100_000.0).suffix(" Pa");
+        let slider = slider.logarithmic(true).max_decimals(0);
+        if is_changed(ui, slider, "Young's modulus", MODULUS_HINT) {
             let size = BlockSize::Modulus;
-            commands.push(Command::Body(BodyCommand::Set { block, size, value }));
+            Command::Body(BodyCommand::Set { block, size, value }).send(ui);
         }
     }
     ui.end_row();
 }
 
 /// Draws the buttons that adapt the gait to the edited body, and that start a run from it.
-fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>, commands: &mut Vec<Command>) {
+fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>) {
     ui.add_space(theme::GAP / 2.0);
     if let Some([done, all]) = edited.tuning {
         let share = done as f32 / all.max(1) as f32;
         let words = format!("{done} of {all} gaits tried");
-        if cancellable_progress(ui, "Keep the best gait so far", share, &words) {
-            commands.push(Command::Body(BodyCommand::CancelTuning));
-        }
-        return;
+        let cancel = ("Keep the best gait so far", Command::Body(BodyCommand::CancelTuning));
+        return cancellable_progress(ui, cancel, share, &words);
     }
     let is_allowed = edited.problem.is_none();
     ui.horizontal_wrapped(|ui| {
         for (label, hint, command) in [
             (
                 "Adapt the gait",
-                "The gait fits the body that it was learned with: try 59 gaits like it, and keep the best",
+                "The gait fits the body with which it evolved: try 59 gaits like it, and keep the best",
                 BodyCommand::Tune,
             ),
             (
-                "Start a run from this body",
-                "Evolve it further, block by block. The current run stays saved",
+                "Evolve body and gait",
+                "Start a run from this snake, in which its blocks change, too. The current run stays saved",
                 BodyCommand::Evolve,
             ),
         ] {
-            let button = CommandButton::new(label, hint, Command::Body(command));
-            button.only_if(is_allowed).show(ui, commands);
+            CommandButton::new(label, hint, Command::Body(command)).only_if(is_allowed).show(ui);
         }
     });
 }

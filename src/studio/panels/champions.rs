@@ -6,7 +6,7 @@ mod summary;
 
 use bevy_egui::egui;
 
-use super::shown::{ShownChampion, ShownLane};
+use super::shown::ShownLane;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::ui::buttons::{CommandButton, command_box, show_or_join};
@@ -52,14 +52,14 @@ impl ChampionsView<'_> {
     }
 
     /// Returns the lane of a champion of the list, if the champion is on the stage.
-    fn lane_of(&self, champion: ShownChampion) -> Option<&ShownLane> {
+    fn lane_of(&self, champion: Pick) -> Option<&ShownLane> {
         self.shown.iter().find(|shown| shown.champion == champion)
     }
 }
 
 impl ChampionsPanel {
-    /// Draws the list and collects the user's commands.
-    pub fn ui(&mut self, ui: &mut egui::Ui, view: &ChampionsView, commands: &mut Vec<Command>) {
+    /// Draws the list and sends the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, view: &ChampionsView) {
         let summary = self.summary(view.reports);
         self.climbs.poll();
         let no_generation = Some("Nothing to show yet: finish a generation first")
@@ -94,12 +94,11 @@ impl ChampionsPanel {
                     StageCommand::RaceLeaders(None),
                 ),
             ] {
-                let button = CommandButton::new(name, hint, Command::Stage(command));
-                button.unless(refusal).show(ui, commands);
+                CommandButton::new(name, hint, Command::Stage(command)).unless(refusal).show(ui);
             }
         });
         ui.horizontal_wrapped(|ui| {
-            follow_box(ui, view.follows, commands);
+            follow_box(ui, view.follows);
             let name = "Better ones only";
             if view.has_better_only() {
                 let hint = "A run whose stairs evolve keeps only the snakes that beat those of all generations before";
@@ -115,17 +114,11 @@ impl ChampionsPanel {
         if view.reports.is_empty() {
             explain(ui, "The best snake of each generation will appear here.");
         }
-        self.list(ui, view, &summary, commands);
+        self.list(ui, view, &summary);
     }
 
     /// Draws the rows: first the champions with which the studio was opened, then the generations, the newest first.
-    fn list(
-        &mut self,
-        ui: &mut egui::Ui,
-        view: &ChampionsView,
-        summary: &ReportSummary,
-        commands: &mut Vec<Command>,
-    ) {
+    fn list(&mut self, ui: &mut egui::Ui, view: &ChampionsView, summary: &ReportSummary) {
         let better = (self.lists_better_only || view.has_better_only()).then_some(&summary.better);
         let listed = better.map_or(view.reports.len(), |better| better.len());
         // Room beside the rows is reserved for the scroll bar, so that the columns do not move when it appears.
@@ -139,14 +132,14 @@ impl ChampionsPanel {
             for index in seen {
                 if let Some((name, loaded)) = view.opening.get(index) {
                     let row = ChampionRow {
-                        shown: view.lane_of(ShownChampion::Opening(index)),
+                        shown: view.lane_of(Pick::Opened(index)),
                         name,
                         champion: &loaded.champion,
                         climb: self.climbs.of_save(loaded),
                         pick: Pick::Opened(index),
                         race: None,
                     };
-                    row.ui(ui, commands);
+                    row.ui(ui);
                     continue;
                 }
                 let from_end = listed - 1 - (index - view.opening.len());
@@ -161,7 +154,7 @@ impl ChampionsPanel {
                     continue;
                 };
                 let individual = champion.origin.individual;
-                let found = ShownChampion::Found(IndividualId { generation, individual });
+                let found = Pick::Individual(IndividualId { generation, individual });
                 let mark = summary.best.filter(|(best, _)| *best == generation);
                 let row = ChampionRow {
                     shown: view.lane_of(found),
@@ -171,7 +164,7 @@ impl ChampionsPanel {
                     pick: Pick::Generation(generation),
                     race: ((view.leaders)(Some(generation)) > 1).then_some(generation),
                 };
-                row.ui(ui, commands);
+                row.ui(ui);
             }
         });
     }
@@ -189,10 +182,10 @@ impl ChampionsPanel {
 pub(super) const FOLLOW_COMMAND: Command = Command::Stage(StageCommand::ToggleFollowEvolution);
 
 /// Draws the check box for following evolution, unless no better generation can come.
-pub(super) fn follow_box(ui: &mut egui::Ui, follows: Option<bool>, commands: &mut Vec<Command>) {
+pub(super) fn follow_box(ui: &mut egui::Ui, follows: Option<bool>) {
     if let Some(is_on) = follows {
         let words = ("Follow evolution", "Show each better generation as soon as it is found");
-        command_box(ui, is_on, words, FOLLOW_COMMAND, commands);
+        command_box(ui, is_on, words, FOLLOW_COMMAND);
     }
 }
 
@@ -211,7 +204,7 @@ struct ChampionRow<'r> {
 impl ChampionRow<'_> {
     /// Draws the row. A click shows the champion alone; a click with Shift or Control adds the champion to the stage.
     /// The context menu starts the next run from the champion, or races the ten best snakes of its generation.
-    fn ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+    fn ui(&self, ui: &mut egui::Ui) {
         let Self { shown, name, champion, climb, pick, .. } = *self;
         let time = landed_s(champion, climb);
         let picture = climb.map(|climb| &climb.picture);
@@ -228,7 +221,7 @@ impl ChampionRow<'_> {
             ui.label("Click to replay. Shift-click to add it to the stage. Right-click for more.");
         });
         if response.clicked() {
-            commands.push(show_or_join(ui, pick));
+            show_or_join(ui, pick).send(ui);
         }
         response.context_menu(|ui| {
             let hint = "The first generation descends from it, in the world where it was found";
@@ -239,7 +232,7 @@ impl ChampionRow<'_> {
                 CommandButton::new("Race best 10 of this generation", "", command)
             });
             for entry in std::iter::once(start).chain(race) {
-                if entry.show(ui, commands) {
+                if entry.show(ui) {
                     ui.close();
                 }
             }

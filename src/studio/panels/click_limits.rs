@@ -33,9 +33,9 @@ mod tests {
     #[test]
     fn a13_space_does_not_press_a_button_again_that_was_clicked_after_it_had_the_keyboard() {
         use crate::studio::commands::Command;
-        let mut panel = panel([300.0, 100.0], |ui, commands| {
+        let mut panel = panel([300.0, 100.0], |ui| {
             leave_keyboard_to_stage(ui.ctx());
-            CommandButton::new("Undo", "", Command::Undo).show(ui, commands);
+            CommandButton::new("Undo", "", Command::Undo).show(ui);
         });
         press(&mut panel, egui::Key::Tab);
         press(&mut panel, egui::Key::Space);

@@ -20,15 +20,15 @@ use snakes_core::evolve::Champion;
 use snakes_core::score::{Evaluation, Fitness, Trial};
 use snakes_lab::plot::Axis;
 
-/// Draws the list of lessons or the lesson in progress, and collects the user's commands.
-pub(super) fn lessons(ui: &mut egui::Ui, of: &Lessons, commands: &mut Vec<Command>) {
+/// Draws the list of lessons or the lesson in progress, and sends the user's commands.
+pub(super) fn lessons(ui: &mut egui::Ui, of: &Lessons) {
     match of.view() {
-        None => list(ui, &of.finished, commands),
-        Some(view) => lesson(ui, view, commands),
+        None => list(ui, &of.finished),
+        Some(view) => lesson(ui, view),
     }
 }
 
-fn list(ui: &mut egui::Ui, finished: &BTreeSet<String>, commands: &mut Vec<Command>) {
+fn list(ui: &mut egui::Ui, finished: &BTreeSet<String>) {
     explain(ui, "Two-minute experiments. Your own run is paused and comes back unchanged.");
     for (index, lesson) in LESSONS.iter().enumerate() {
         let palette = theme::of(ui);
@@ -40,7 +40,7 @@ fn list(ui: &mut egui::Ui, finished: &BTreeSet<String>, commands: &mut Vec<Comma
                 let name = format!("Begin lesson {}", index + 1);
                 let begin = named(ui.button("Begin"), egui::WidgetType::Button, &name);
                 if begin.clicked() {
-                    commands.push(Command::Lesson(LessonCommand::Begin(index)));
+                    Command::Lesson(LessonCommand::Begin(index)).send(ui);
                 }
                 if finished.contains(lesson.title) {
                     ui.label(egui::RichText::new("✔ finished").color(palette.accent));
@@ -55,16 +55,15 @@ fn numbered(index: usize) -> String {
     format!("{}. {}", index + 1, LESSONS[index].title)
 }
 
-fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) {
+fn lesson(ui: &mut egui::Ui, view: LessonView<'_>) {
     let lesson = &LESSONS[view.index];
     ui.horizontal_wrapped(|ui| {
         let back = accent_button(ui, "Back to my own run");
         let hint = "End the lesson and restore your run, its settings and the stage";
-        let leave = Command::Lesson(LessonCommand::Leave);
-        CommandButton::of(back, hint, leave).show(ui, commands);
+        CommandButton::of(back, hint, Command::Lesson(LessonCommand::Leave)).show(ui);
         if view.index + 1 < LESSONS.len() {
             let next = Command::Lesson(LessonCommand::Begin(view.index + 1));
-            CommandButton::new("Next lesson", "", next).show(ui, commands);
+            CommandButton::new("Next lesson", "", next).show(ui);
         }
     });
     ui.label(egui::RichText::new(numbered(view.index)).size(theme::HEADING_SIZE).strong());
@@ -78,10 +77,10 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
         let button = button.min_size(egui::vec2(ui.available_width(), 0.0));
         let refusal = Some("The runs are still in progress").filter(|_| view.is_busy);
         let show = Command::Lesson(LessonCommand::ShowScene(index));
-        CommandButton::of(button, "", show).unless(refusal).show(ui, commands);
+        CommandButton::of(button, "", show).unless(refusal).show(ui);
     }
     if let Some(scene) = lesson.scenes.get(view.scene) {
-        prediction(ui, scene, view, commands);
+        prediction(ui, scene, view);
     }
     heading(ui, "What to look for");
     ui.label(lesson.look_for);
@@ -90,26 +89,17 @@ fn lesson(ui: &mut egui::Ui, view: LessonView<'_>, commands: &mut Vec<Command>) 
         ui.label(lesson.conclusion);
     } else {
         let asked = lesson.scenes.iter().filter(|scene| scene.question.is_some()).count();
-        explain(
-            ui,
-            match asked {
-                1 => "It appears here once you have seen the result of the experiment.",
-                _ => {
-                    "It appears here once you have seen the results of all experiments of this lesson."
-                }
-            },
-        );
+        let seen = match asked {
+            1 => "the result of the experiment",
+            _ => "the results of all experiments of this lesson",
+        };
+        explain(ui, &format!("It appears here once you have seen {seen}."));
     }
-    worksheet(ui, view.index, commands);
+    worksheet(ui, view.index);
 }
 
 /// Draws the question, the guess and the result of the selected scene.
-fn prediction(
-    ui: &mut egui::Ui,
-    scene: &LessonScene,
-    view: LessonView<'_>,
-    commands: &mut Vec<Command>,
-) {
+fn prediction(ui: &mut egui::Ui, scene: &LessonScene, view: LessonView<'_>) {
     let progress = view.progress;
     if let Some(question) = &scene.question {
         let palette = theme::of(ui);
@@ -123,7 +113,7 @@ fn prediction(
                     ui.label(comparison);
                     ui.label(question.finding);
                 }
-                _ if !progress.has_begun => guess_buttons(ui, scene, commands),
+                _ if !progress.has_begun => guess_buttons(ui, scene),
                 (guessed, None) => {
                     ui.label(match guessed {
                         Some(guessed) => format!("Your guess: {guessed}"),
@@ -135,7 +125,7 @@ fn prediction(
                         explain(ui, "The result appears when the race has ended.");
                         if guessed.is_some() {
                             let show = Command::Lesson(LessonCommand::ShowResult);
-                            CommandButton::new("Show the result now", "", show).show(ui, commands);
+                            CommandButton::new("Show the result now", "", show).show(ui);
                         }
                     }
                 }
@@ -163,32 +153,32 @@ fn prediction(
 }
 
 /// Draws the answers to choose from, and a button to continue without a guess.
-fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene, commands: &mut Vec<Command>) {
+fn guess_buttons(ui: &mut egui::Ui, scene: &LessonScene) {
     ui.horizontal_wrapped(|ui| {
         for (index, answer) in scene.answers().into_iter().enumerate() {
             // The full name distinguishes the button from controls of other panels with the same label.
             let name = format!("Guess: {answer}");
             let response = named(ui.button(answer), egui::WidgetType::Button, &name);
             if response.on_hover_text("Guess this, and begin the experiment").clicked() {
-                commands.push(Command::Lesson(LessonCommand::Guess(index)));
+                Command::Lesson(LessonCommand::Guess(index)).send(ui);
             }
         }
     });
     let hint = "Begin the experiment; its result appears at the end";
     let watch = Command::Lesson(LessonCommand::Watch);
-    CommandButton::small("Watch without a guess", hint, watch).show(ui, commands);
+    CommandButton::new("Watch without a guess", hint, watch).small().show(ui);
 }
 
 /// Draws the section about the worksheet to print.
-fn worksheet(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
+fn worksheet(ui: &mut egui::Ui, index: usize) {
     heading(ui, "Worksheet");
     ui.horizontal_wrapped(|ui| {
         let hint = "Opens the worksheet in the browser, which prints it on one sheet of paper; a tick there shows the teacher's answers";
         let print = Command::File(FileCommand::PrintWorksheet(index));
-        CommandButton::new("Print the worksheet", hint, print).show(ui, commands);
+        CommandButton::new("Print the worksheet", hint, print).show(ui);
         let hint = "Copy its text (Markdown), with the teacher's answers at its end, to paste it into a text processor";
         let copied = Command::Notify(format!("Worksheet {} copied.", index + 1));
-        if CommandButton::new("Copy worksheet", hint, copied).show(ui, commands) {
+        if CommandButton::new("Copy worksheet", hint, copied).show(ui) {
             ui.ctx().copy_text(LESSONS[index].worksheet.to_owned());
         }
     });
@@ -331,7 +321,12 @@ fn runs(ui: &mut egui::Ui, progress: &Progress, asks: Option<Asks>, is_busy: boo
 /// Explains from where a table counts distances.
 fn zero(ui: &mut egui::Ui, trial: &Trial) {
     let to_step_m = trial.stairs.first_riser_y_m;
-    explain(ui, &format!("0 m lies {to_step_m} m before the first step; snakes start behind it."));
+    explain(
+        ui,
+        &format!(
+            "Positions count from a line {to_step_m} m before the first step. Snakes start before that line, at negative positions."
+        ),
+    );
 }
 
 fn table(ui: &mut egui::Ui, id: &str, heads: &[&str], rows: impl FnOnce(&mut egui::Ui)) {

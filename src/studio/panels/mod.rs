@@ -1,7 +1,8 @@
 //! Panels around the stage, and controls on its edges: the player and the torques below, the camera bar above, the
 //! leaderboard beside it.
 //!
-//! A panel is a struct with a `ui` method, which reads the state and sends commands but does not change the state.
+//! A panel is a struct with a `ui` method, which reads the state and sends commands but does not change the state. The
+//! commands wait in egui's context until the frame is drawn: see [`Command::send`].
 
 mod body;
 mod champions;
@@ -38,6 +39,7 @@ use egui_dock::DockArea;
 use super::commands::actions::Situation;
 use super::commands::modal::Modal;
 use super::commands::{Command, WindowCommand};
+use super::stage::StageMode;
 use super::stage::lane::Lane;
 use super::stage::opening::OpeningChampions;
 use super::stage::staged_champion::ChampionSource;
@@ -47,7 +49,7 @@ use super::state::files::Files;
 use super::state::lessons::{LESSONS, Lessons};
 use super::state::library::Library;
 use super::state::machines::MachinesLink;
-use super::state::options::OpenedComparison;
+use super::state::options::Options;
 use super::state::shares::Shares;
 use super::state::stairs_exams::StairsExams;
 use super::ui::accessible::named;
@@ -110,8 +112,8 @@ struct Panels {
 }
 
 pub(super) fn plugin(app: &mut App) {
-    let comparison = app.world().get_resource::<OpenedComparison>();
-    let charts = ChartsPanel::new(comparison.and_then(|opened| opened.0.as_ref()));
+    let comparison = app.world().get_resource::<Options>();
+    let charts = ChartsPanel::new(comparison.and_then(|opened| opened.comparison.as_ref()));
     app.add_plugins(bevy_egui::EguiPlugin::default())
         .insert_resource(Panels { charts, ..Panels::default() })
         .add_systems(EguiPrimaryContextPass, draw);
@@ -146,8 +148,8 @@ fn draw(
     if is_first {
         theme::apply(&context);
         panels.is_styled = true;
-        panels.world.unfold(&workspace.unfolded);
-        panels.evolution.unfold(&workspace.unfolded);
+        panels.world.sheet.unfold(&workspace.unfolded);
+        panels.evolution.sheet.unfold(&workspace.unfolded);
     }
     context.set_theme(egui::Theme::from(*data.theme));
     workspace.scale.fit(context.content_rect().size() * context.zoom_factor());
@@ -162,7 +164,6 @@ fn draw(
     // A new scale takes effect in the next frame.
     let is_settled = context.zoom_factor() == scale;
     context.set_zoom_factor(scale);
-    let mut commands = Vec::new();
     let on_stage = &data.on_stage;
     let (scene, files) =
         ((&*on_stage.mode, &*on_stage.way_back), (&*on_stage.history, &*data.shares));
@@ -181,11 +182,12 @@ fn draw(
     panels.panel_rects.clear();
     let panels = &mut *panels;
     if let Some(label) = workspace.sought.take() {
-        panels.world.set_search(label);
+        label.clone_into(&mut panels.world.search);
     }
-    let (shows_torques, is_larger) = (workspace.shows_torques(), workspace.scale.is_larger());
+    let (shows_torques, is_larger) = (workspace.shows_torques(), workspace.scale.chosen > 1.0);
     panels.timeline.shows_torques = shows_torques;
     panels.timeline.limb = on_stage.selection.limb;
+    panels.timeline.offers_why = !matches!(*on_stage.mode, StageMode::Generation { .. });
     let is_on = |command: &Command| match command {
         Command::Window(WindowCommand::ToggleTorques) => Some(shows_torques),
         Command::Window(WindowCommand::Enlarge) => Some(is_larger),
@@ -202,7 +204,6 @@ fn draw(
         lanes: &lanes,
         focused,
         stage: None,
-        commands: &mut commands,
     };
     if is_first && !is_settled {
         // Nothing is drawn until the scale has taken effect, because the saved layout would otherwise be measured at the wrong scale.
@@ -220,11 +221,10 @@ fn draw(
             let about = format!("{preset}, seed {}", data.run.plan_now.seed);
             let share = data.shares.progress();
             let right = (about.as_str(), share.as_ref());
-            menu(ui, situation, &is_on, &data.files.recent, right, viewer.commands);
+            menu(ui, situation, &is_on, &data.files.recent, right);
         });
         let mut seen = lanes.iter().filter(|lane| !lane.is_ghost);
-        let senses =
-            |lane: &&Lane| lane.staged.champion().genome.controller.kind().senses_surroundings();
+        let senses = |lane: &&Lane| lane.staged.champion().genome.senses_surroundings();
         workspace.layout.offer(PanelKind::Senses, seen.any(senses));
         let style = style(&root);
         let size = root.available_size();
@@ -252,34 +252,31 @@ fn draw(
                 messages: area.messages_size(),
             };
             let (snakes, state) = ((&lanes[..], lane), (&of, &mut panels.cards));
-            let around = around_stage(&context, stage, on_stage, snakes, state, &mut commands);
-            (cards, messages_room) = (around.cards, around.messages_room);
+            (cards, messages_room) = around_stage(&context, stage, on_stage, snakes, state);
         }
         area.set(&context, stage, cards, messages_room);
     }
     match workspace.modal() {
-        Some(Modal::Keys) => key_overlay(&context, &mut commands),
+        Some(Modal::Keys) => key_overlay(&context),
         Some(Modal::CommandPalette) => {
             let lessons = LESSONS.each_ref().map(|lesson| lesson.title);
-            panels.palette.ui(&context, situation, &lessons, &mut commands);
+            panels.palette.ui(&context, situation, &lessons);
         }
         Some(Modal::Tour(step)) => {
             let target = highlighted_panel(step)
                 .and_then(|kind| panels.panel_rects.iter().find(|(of, _)| *of == kind))
                 .map(|(_, place)| *place);
             let player_commands = on_stage.playback.commands;
-            panels.tour.ui(&context, step, target, player_commands, &mut commands);
+            panels.tour.ui(&context, step, target, player_commands);
         }
         Some(Modal::Quit) => {
             let work = unfinished(&data.shares, &data.exams, &data.bodies, &data.saves);
-            quit_question(&context, &work, &mut commands);
+            quit_question(&context, &work);
         }
         None => {}
     }
-    if workspace.modal() != Some(Modal::CommandPalette) {
-        panels.palette.close();
-    }
-    send.write_batch(commands);
+    panels.palette.is_open &= workspace.modal() == Some(Modal::CommandPalette);
+    send.write_batch(Command::take_sent(&context));
     Ok(())
 }
 
@@ -306,7 +303,6 @@ struct Viewer<'v, 'w, 's> {
     focused: Option<&'v Lane>,
     /// Rectangle of the stage in points; `None` until it is drawn in this frame.
     stage: Option<egui::Rect>,
-    commands: &'v mut Vec<Command>,
 }
 
 impl Viewer<'_, '_, '_> {
@@ -319,7 +315,7 @@ impl Viewer<'_, '_, '_> {
                 let hides_future = is_of_lesson && self.data.lessons.hides_result();
                 let span = TimelineSpan::of(self.lanes.iter().copied(), hides_future);
                 let (playback, run) = (&self.data.on_stage.playback, self.data.run.number());
-                self.panels.timeline.ui(ui, lane, playback, span, run, self.commands);
+                self.panels.timeline.ui(ui, lane, playback, span, run);
             });
         }
         self.reserve_stage(ui);
@@ -344,22 +340,22 @@ impl Viewer<'_, '_, '_> {
         let shown = ShownLane::all(self.lanes, self.data.run.number());
         let PanelData { run, opening, on_stage, .. } = self.data;
         let (lanes, focused, history) = (self.lanes, self.focused, &on_stage.history);
-        let (panels, commands) = (&mut *self.panels, &mut *self.commands);
+        let panels = &mut *self.panels;
         match kind {
             PanelKind::Stage => {}
             PanelKind::Run => {
                 let fitness = &mut panels.fitness;
-                let chart = |ui: &mut egui::Ui, commands: &mut Vec<Command>| {
-                    fitness.ui(ui, run, theme::CHART_HEIGHT, &shown, commands);
+                let chart = |ui: &mut egui::Ui| {
+                    fitness.ui(ui, run, theme::CHART_HEIGHT, &shown);
                 };
-                panels.evolution.ui(ui, run, chart, commands);
+                panels.evolution.ui(ui, run, chart);
             }
             PanelKind::World => {
                 let read = ReadLanes::of(lanes, focused, on_stage);
-                panels.world.ui(ui, run, history, &read, commands);
+                panels.world.ui(ui, run, history, &read);
             }
             PanelKind::Charts => {
-                panels.charts.ui(ui, run, &shown, focused.map(|lane| &lane.staged), commands);
+                panels.charts.ui(ui, run, &shown, focused.map(|lane| &lane.staged));
             }
             PanelKind::Champions => {
                 let view = ChampionsView {
@@ -369,20 +365,20 @@ impl Viewer<'_, '_, '_> {
                     leaders: &|generation| run.leaders(generation).len(),
                     follows: on_stage.following.offered(run),
                 };
-                panels.champions.ui(ui, &view, commands);
+                panels.champions.ui(ui, &view);
             }
-            PanelKind::Lessons => lessons(ui, &self.data.lessons, commands),
+            PanelKind::Lessons => lessons(ui, &self.data.lessons),
             PanelKind::Senses => {
                 let view = SensesView::of(lanes, focused, on_stage);
-                panels.senses.ui(ui, view.as_ref(), &self.data.exams, commands);
+                panels.senses.ui(ui, view.as_ref(), &self.data.exams);
             }
             PanelKind::Body => {
                 let limb = on_stage.selection.limb;
-                panels.body.ui(ui, self.data.bodies.edited(), focused, limb, commands);
+                panels.body.ui(ui, self.data.bodies.edited(), focused, limb);
             }
-            PanelKind::Stairs => panels.stairs.ui(ui, run, history, focused, commands),
-            PanelKind::Library => panels.saves.ui(ui, &self.data.saves, history, commands),
-            PanelKind::Machines => panels.machines.ui(ui, &self.data.machines, run, commands),
+            PanelKind::Stairs => panels.stairs.ui(ui, run, history, focused),
+            PanelKind::Library => panels.saves.ui(ui, &self.data.saves, history),
+            PanelKind::Machines => panels.machines.ui(ui, &self.data.machines, run),
         }
     }
 }

@@ -51,7 +51,7 @@ impl OnStage<'_, '_> {
                 Some(self.rig.camera_mode() != CameraMode::Free)
             }
             Command::View(ViewCommand::ToggleOverlay(overlay)) => {
-                Some(self.overlays.shows(*overlay))
+                Some(self.overlays.contains(overlay))
             }
             Command::View(ViewCommand::ToggleTheme) => Some(theme == Theme::Dark),
             _ => None,

@@ -78,30 +78,12 @@ impl OwnName {
     }
 }
 
-/// Draws the list of all files of a kind: first the built-in ones, then the user's own, with the reason if one cannot
-/// be used. Returns the file that was clicked.
-pub(super) fn known_files<'k, T: OwnKind>(
-    ui: &mut egui::Ui,
-    known: &'k KnownFiles<T>,
-    heading: &str,
-    selected: Option<&str>,
-    about: impl Fn(&T) -> &str,
-) -> Option<&'k T> {
-    let mut clicked = None;
-    for file in known.built_in() {
-        if file_row(ui, file.name(), selected, about(file)) {
-            clicked = Some(file);
-        }
-    }
-    own_files(ui, known, heading, selected, about).or(clicked)
-}
-
 /// Draws the row of a file that can be used. Returns whether it was clicked.
-fn file_row(ui: &mut egui::Ui, name: &str, selected: Option<&str>, about: &str) -> bool {
+pub(super) fn file_row(ui: &mut egui::Ui, name: &str, selected: Option<&str>, about: &str) -> bool {
     ui.selectable_label(selected == Some(name), name).on_hover_text(about).clicked()
 }
 
-/// Draws the user's own files below a heading, if there are any. Returns the clicked one.
+/// Draws the user's own files below a heading, if there are any, with the reason if one cannot be used. Returns the clicked one.
 pub(super) fn own_files<'k, T: OwnKind>(
     ui: &mut egui::Ui,
     known: &'k KnownFiles<T>,

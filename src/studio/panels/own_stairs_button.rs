@@ -7,14 +7,10 @@ use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::buttons::CommandButton;
 
 /// Draws a button that shows a champion on its own stairs again, if the champion is on stairs of its exam.
-pub(super) fn own_stairs_button(
-    ui: &mut egui::Ui,
-    staged: &StagedChampion,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn own_stairs_button(ui: &mut egui::Ui, staged: &StagedChampion) {
     if staged.is_on_stairs_of_exam() {
         let hint = "Show the snake where it was found, from the start";
         let back = Command::Exam(ExamCommand::BackToOwnStairs);
-        CommandButton::new("Back to its own stairs", hint, back).show(ui, commands);
+        CommandButton::new("Back to its own stairs", hint, back).show(ui);
     }
 }

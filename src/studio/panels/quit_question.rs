@@ -28,16 +28,12 @@ pub(crate) fn unfinished(
     share.into_iter().chain(exam).chain(body).chain(batches).collect()
 }
 
-/// Draws the question over the window, with a sentence for each piece of work in `unfinished`, and collects the answer.
+/// Draws the question over the window, with a sentence for each piece of work in `unfinished`, and sends the answer.
 /// Closes the question when the last piece is finished.
-pub(super) fn quit_question(
-    context: &egui::Context,
-    unfinished: &[String],
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn quit_question(context: &egui::Context, unfinished: &[String]) {
     let wait = Command::Window(WindowCommand::CloseModal);
     if unfinished.is_empty() {
-        return commands.push(wait);
+        return wait.send(context);
     }
     let frame = theme::of_context(context).dialog();
     let shown = egui::Modal::new(egui::Id::new("quit")).frame(frame).show(context, |ui| {
@@ -49,12 +45,12 @@ pub(super) fn quit_question(
         explain(ui, "Quitting loses this. The run is saved and can be continued later.");
         ui.horizontal(|ui| {
             let button = accent_button(ui, "Wait");
-            CommandButton::of(button, "Keep the window open", wait.clone()).show(ui, commands);
-            CommandButton::new("Quit anyway", "", Command::Quit).show(ui, commands);
+            CommandButton::of(button, "Keep the window open", wait.clone()).show(ui);
+            CommandButton::new("Quit anyway", "", Command::Quit).show(ui);
         });
     });
     if shown.backdrop_response.clicked() {
-        commands.push(wait);
+        wait.send(context);
     }
 }
 
@@ -66,9 +62,9 @@ mod tests {
     #[test]
     fn the_question_names_the_work_and_closes_when_it_is_finished() {
         let asked = |unfinished: &'static [&str]| {
-            panel([600.0, 400.0], move |ui, commands| {
+            panel([600.0, 400.0], move |ui| {
                 let unfinished: Vec<String> = unfinished.iter().map(|of| of.to_string()).collect();
-                quit_question(ui.ctx(), &unfinished, commands);
+                quit_question(ui.ctx(), &unfinished);
             })
         };
         let wait = Command::Window(WindowCommand::CloseModal);

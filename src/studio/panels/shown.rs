@@ -2,50 +2,36 @@
 
 use bevy_egui::egui::Color32;
 
+use crate::studio::commands::pick::Pick;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::ui::theme::Palette;
-use snakes_core::evolve::{IndividualId, Origin};
+use snakes_core::evolve::{Champion, IndividualId, Origin};
 
-/// An entry of the champions list that is on the stage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ShownChampion {
-    /// A champion with which the studio was opened; the first is 0.
-    Opening(usize),
-    /// An individual of the current run.
-    Found(IndividualId),
+/// Returns the place of a champion in the run that found it.
+pub(crate) fn place_of(champion: &Champion) -> IndividualId {
+    let Origin { generation, individual, .. } = champion.origin;
+    IndividualId { generation, individual }
 }
 
-impl ShownChampion {
-    /// Returns the list entry of a staged champion, if it has one. `run` is the number of the current run.
-    pub(crate) fn of(staged: &StagedChampion, run: u32) -> Option<Self> {
-        match staged.source() {
-            ChampionSource::Opened(index) => Some(Self::Opening(index)),
-            ChampionSource::Run(of) if of == run => {
-                let Origin { generation, individual, .. } = staged.champion().origin;
-                Some(Self::Found(IndividualId { generation, individual }))
-            }
-            ChampionSource::Library(_)
-            | ChampionSource::Run(_)
-            | ChampionSource::Lesson
-            | ChampionSource::Edited => None,
-        }
-    }
-
-    /// Returns the place of the champion in the current run, if it is from there.
-    pub(crate) fn place(self) -> Option<IndividualId> {
-        match self {
-            Self::Found(place) => Some(place),
-            Self::Opening(_) => None,
-        }
+/// Returns the entry of the champions list for a staged champion: an opened champion or an individual of the current run, whose number is
+/// `run`.
+fn entry_of(staged: &StagedChampion, run: u32) -> Option<Pick> {
+    match staged.source() {
+        ChampionSource::Opened(index) => Some(Pick::Opened(index)),
+        ChampionSource::Run(of) if of == run => Some(Pick::Individual(place_of(staged.champion()))),
+        ChampionSource::Library(_)
+        | ChampionSource::Run(_)
+        | ChampionSource::Lesson
+        | ChampionSource::Edited => None,
     }
 }
 
 /// A champion of the list that is on the stage, with its lane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ShownLane {
-    /// Champion of the list that is on the stage.
-    pub champion: ShownChampion,
+    /// Champion of the list that is on the stage: an opened champion or an individual.
+    pub champion: Pick,
     /// Lane of the champion, if several lanes side by side have colours; the first is 0.
     pub lane: Option<usize>,
 }
@@ -56,7 +42,7 @@ impl ShownLane {
         let racers = || lanes.iter().filter(|lane| !lane.is_ghost);
         let are_many = racers().nth(1).is_some();
         let shown = racers().filter_map(|lane| {
-            let champion = ShownChampion::of(&lane.staged, run)?;
+            let champion = entry_of(&lane.staged, run)?;
             Some(Self { champion, lane: are_many.then_some(lane.number) })
         });
         shown.collect()

@@ -27,17 +27,12 @@ pub(super) fn fit_tabs(context: &egui::Context, layout: &mut Layout) {
 pub(super) fn small_tabs(context: &egui::Context, layout: &Layout) -> Vec<(PanelKind, f32)> {
     let style = context.global_style();
     let font = egui::TextStyle::Button.resolve(&style);
-    let is_crowded =
-        |(width, kinds): &(f32, Vec<PanelKind>)| bar_width(context, kinds, &font) > *width;
-    let size = |width: f32, kinds: &[PanelKind]| {
-        let fits =
-            |size: &f32| bar_width(context, kinds, &egui::FontId::proportional(*size)) <= width;
-        SMALL_SIZES.into_iter().find(fits).unwrap_or(SMALL_SIZES[1])
-    };
-    let crowded = layout.tab_bars().into_iter().filter(is_crowded);
-    let sized = crowded.flat_map(|(width, kinds)| {
-        let size = size(width, &kinds);
-        kinds.into_iter().map(move |kind| (kind, size))
+    let sized = layout.tab_bars().into_iter().flat_map(|(width, kinds)| {
+        let fits = |font: &egui::FontId| bar_width(context, &kinds, font) <= width;
+        let small_fits = |size: &f32| fits(&egui::FontId::proportional(*size));
+        let largest = || SMALL_SIZES.into_iter().find(small_fits).unwrap_or(SMALL_SIZES[1]);
+        let size = (!fits(&font)).then(largest);
+        kinds.into_iter().filter_map(move |kind| Some((kind, size?)))
     });
     sized.collect()
 }

@@ -32,7 +32,8 @@ impl TabViewer for Viewer<'_, '_, '_> {
 
     fn on_tab_button(&mut self, kind: &mut PanelKind, response: &egui::Response) {
         let name = format!("Panel {}", kind.name());
-        named(response.clone(), egui::WidgetType::Button, &name).on_hover_text(kind.hint());
+        named(response.clone(), egui::WidgetType::Button, &name)
+            .on_hover_text(kind.hint_with_key());
     }
 
     fn is_closeable(&self, kind: &PanelKind) -> bool {

@@ -1,28 +1,43 @@
 //! Helper functions for tests of panels: panels without a window, champions, reports.
 
 use bevy_egui::egui;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use egui_kittest::{Harness, HarnessBuilder};
 
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
+use crate::studio::state::current_run::next_generation;
 use snakes_core::evolve::{RunPlan, Settings, with_fields};
 use snakes_core::genome::{ControllerKind, Genome};
 use snakes_core::rng::{Purpose, stream};
 use snakes_core::save::{load_preset, shipped_champion};
-use snakes_lab::run::{Experiment, GenerationReport, LocalPool, RunControl};
+use snakes_lab::run::{Experiment, GenerationReport};
 
 /// A panel without a window, and the commands that it sent.
 pub(super) type Sent<'a> = Harness<'a, Vec<Command>>;
 
 /// Creates a panel of this size, in points, and runs its first frames.
-pub(super) fn panel<'a>(
+pub(super) fn panel<'a>(size: [f32; 2], draw: impl FnMut(&mut egui::Ui) + 'a) -> Sent<'a> {
+    built(Harness::builder(), size, draw)
+}
+
+/// Creates a panel whose frames take a sixtieth of a second: so short that a slider does not come to rest within a drag, and that two
+/// clicks count as a double click.
+pub(super) fn panel_at_60_hz<'a>(size: [f32; 2], draw: impl FnMut(&mut egui::Ui) + 'a) -> Sent<'a> {
+    built(Harness::builder().with_step_dt(1.0 / 60.0), size, draw)
+}
+
+fn built<'a>(
+    builder: HarnessBuilder<Vec<Command>>,
     size: [f32; 2],
-    mut draw: impl FnMut(&mut egui::Ui, &mut Vec<Command>) + 'a,
+    mut draw: impl FnMut(&mut egui::Ui) + 'a,
 ) -> Sent<'a> {
-    let builder = Harness::builder().with_size(egui::Vec2::from(size));
-    let mut panel = builder.build_ui_state(move |ui, commands| draw(ui, commands), Vec::new());
+    let draw = move |ui: &mut egui::Ui, sent: &mut Vec<Command>| {
+        draw(ui);
+        sent.extend(Command::take_sent(ui));
+    };
+    let mut panel = builder.with_size(egui::Vec2::from(size)).build_ui_state(draw, Vec::new());
     panel.run();
     panel
 }
@@ -30,6 +45,13 @@ pub(super) fn panel<'a>(
 /// Clicks on the element with this label. Returns all commands that the panel has sent.
 pub(super) fn clicked(panel: &mut Sent<'_>, label: &str) -> Vec<Command> {
     panel.get_by_label(label).click();
+    panel.run();
+    panel.state().clone()
+}
+
+/// Calls `act` on a panel. Returns all commands that the panel has sent.
+pub(super) fn sent_by(mut panel: Sent<'_>, act: impl FnOnce(&mut Sent<'_>)) -> Vec<Command> {
+    act(&mut panel);
     panel.run();
     panel.state().clone()
 }
@@ -92,6 +114,5 @@ pub(super) fn report_of(seed: u64) -> GenerationReport {
     settings.evolution.population = 4;
     settings.trial.duration_s = 0.5;
     let mut experiment = Experiment::new(RunPlan::new("test", seed, settings));
-    let pool = LocalPool::new(1).expect("threads");
-    experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled")
+    next_generation(&mut experiment)
 }

@@ -6,8 +6,8 @@ use crate::studio::commands::Command;
 use crate::studio::state::undo::{UndoDirection, UndoHistory};
 use crate::studio::ui::icons::{Icon, small_icon_button};
 
-/// Draws the undo and redo buttons, and collects the user's commands.
-pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &UndoHistory, commands: &mut Vec<Command>) {
+/// Draws the undo and redo buttons, and sends the user's commands.
+pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &UndoHistory) {
     for (way, icon, name, command) in [
         (UndoDirection::Forth, Icon::Redo, "Redo", Command::Redo),
         (UndoDirection::Back, Icon::Undo, "Undo", Command::Undo),
@@ -17,7 +17,7 @@ pub(super) fn undo_buttons(ui: &mut egui::Ui, history: &UndoHistory, commands: &
         let is_on = step.is_some();
         let button = |ui: &mut egui::Ui| small_icon_button(ui, icon, name, &hint);
         if ui.add_enabled_ui(is_on, button).inner.clicked() {
-            commands.push(command);
+            command.send(ui);
         }
     }
 }

@@ -58,12 +58,11 @@ fn put_in_place(studio: &mut Offscreen, loaded: &LoadedChampion) -> Evaluation {
     world.spawn(placed(lane)).with_children(|parent| {
         for poses in moments {
             for (pose, plan) in poses.into_iter().zip(&body.parts) {
-                let size = Vec3::from(plan.size_m());
+                let scale = Vec3::from(plan.size_m());
                 parent.spawn((
                     Mesh3d(cube.clone()),
                     MeshMaterial3d(faint[plan.limb % 2].clone()),
-                    scene::props::box_transform(pose.translation, size)
-                        .with_rotation(pose.rotation),
+                    Transform { translation: pose.translation, rotation: pose.rotation, scale },
                     bevy::light::NotShadowCaster,
                 ));
             }

@@ -131,8 +131,7 @@ impl Offscreen {
 
     /// Shows these overlays.
     pub fn show_overlays(&mut self, overlays: &[Overlay]) {
-        let mut shown = self.app.world_mut().resource_mut::<Overlays>();
-        overlays.iter().for_each(|overlay| shown.show(*overlay));
+        self.app.world_mut().resource_mut::<Overlays>().extend(overlays);
     }
 
     /// Removes all lanes from the stage.

@@ -3,14 +3,13 @@
 use bevy::prelude::*;
 
 use super::offscreen::Offscreen;
-use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::error::StudioError;
-use crate::studio::scene::camera::view::{CameraView, middle_of};
+use crate::studio::scene::camera::view::{CameraView, FreeMargins, middle_of};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{StageMode, lanes};
-use crate::studio::ui::theme::Theme;
+use crate::studio::state::shares::StageLook;
 use snakes_core::save::{LoadedChampion, Picture};
 use snakes_lab::plot::NameTag;
 
@@ -23,12 +22,8 @@ pub struct RenderedScene {
     pub at_s: Option<f64>,
     /// Size of the picture, in pixels.
     pub size: (u32, u32),
-    /// Camera mode: follow, side or top.
-    pub camera: CameraMode,
-    /// Theme of the scene.
-    pub theme: Theme,
-    /// Overlays that are drawn over the scene.
-    pub overlays: Vec<Overlay>,
+    /// Camera mode, theme and overlays.
+    pub look: StageLook,
 }
 
 /// Height of a name tag's anchor point above the centre of the head, in metres.
@@ -41,7 +36,7 @@ const OVER_HEAD_M: f32 = 1.4;
 pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioError> {
     let mut lanes = lanes_of(&scene.champions)?;
     for lane in &mut lanes {
-        if scene.overlays.contains(&Overlay::Trail) {
+        if scene.look.overlays.contains(&Overlay::Trail) {
             lane.finish_lookahead();
         }
         lane.skip_to(scene.at_s.unwrap_or(f64::MAX));
@@ -49,12 +44,13 @@ pub fn render(scene: &RenderedScene) -> Result<(Picture, Vec<NameTag>), StudioEr
     let (width, height) = scene.size;
     let points = in_view(&lanes);
     let target = middle_of(points.iter().copied());
-    let mut view = CameraView::of(scene.camera, lanes.len());
-    view.distance_m = view.distance_to_see(target, points, width as f32 / height.max(1) as f32);
+    let mut view = CameraView::of(scene.look.camera, lanes.len());
+    let aspect = width as f32 / height.max(1) as f32;
+    view.distance_m = view.distance_to_see(target, points, aspect, FreeMargins::default());
     let place = view.looking_at(target);
     let heads = over_heads(&lanes.iter().collect::<Vec<_>>());
-    Offscreen::draw(scene.size, scene.theme, |studio| {
-        studio.show_overlays(&scene.overlays);
+    Offscreen::draw(scene.size, scene.look.theme, |studio| {
+        studio.show_overlays(&scene.look.overlays);
         studio.put_on_stage(lanes);
         studio.place_camera(place);
         Ok((studio.picture()?, studio.tags_of(heads)))
@@ -69,7 +65,7 @@ pub(super) fn lanes_of(champions: &[(String, LoadedChampion)]) -> Result<Vec<Lan
     let saved = champions.iter().enumerate();
     let champions =
         saved.map(|(index, (name, loaded))| StagedChampion::from_file(loaded, index, name));
-    let (lanes, problems) = lanes(champions.collect(), &StageMode::Race);
+    let (lanes, problems) = lanes(champions.collect(), &StageMode::Race, &mut []);
     match problems.into_iter().next() {
         Some(problem) => Err(StudioError::Unfit(problem.trim_end_matches('.').to_owned())),
         None => Ok(lanes),

@@ -8,7 +8,7 @@ use bevy::render::render_resource::TextureFormat;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::window::PrimaryWindow;
 
-use crate::studio::commands::screenshot_area::ScreenshotArea;
+use crate::studio::commands::ScreenshotArea;
 use crate::studio::scene::camera::{StageCamera, camera_components};
 use crate::studio::schedule::FrameSet;
 use crate::studio::state::current_run::CurrentRun;
@@ -57,21 +57,24 @@ fn picture_size(stage: Vec2) -> UVec2 {
     stage * LEAST_WIDTH.div_ceil(stage.x)
 }
 
-/// Takes a screenshot of the window at once. For one of the stage, spawns a second camera.
+/// Takes a screenshot of the window at once. For one of the stage, spawns a second camera, unless one is at work: a software driver takes
+/// seconds for each frame of each.
 fn take(
     mut requests: MessageReader<ScreenshotArea>,
     place: Single<&Transform, With<StageCamera>>,
     window: Single<&Window, With<PrimaryWindow>>,
-    stage: Res<StageArea>,
+    (stage, at_work): (Res<StageArea>, Query<(), With<PendingScreenshot>>),
     mut images: ResMut<Assets<Image>>,
     theme: Res<Theme>,
     mut commands: Commands,
 ) {
+    let mut is_free = at_work.is_empty();
     for area in requests.read() {
         match area {
             ScreenshotArea::Window => {
                 commands.spawn(Screenshot::primary_window()).observe(keep);
             }
+            ScreenshotArea::Stage if !std::mem::take(&mut is_free) => {}
             ScreenshotArea::Stage => {
                 let size = picture_size(stage.in_window().size() * window.scale_factor());
                 let format = TextureFormat::Rgba8UnormSrgb;
@@ -110,11 +113,8 @@ fn keep(captured: On<ScreenshotCaptured>, run: Res<CurrentRun>, mut notices: Res
     let Some(picture) = picture_of(&captured.image) else {
         return notices.problem("The renderer returned no picture.".to_owned());
     };
-    let folder = run.context.saves.pictures();
-    let kept = folder.prepare().and_then(|()| {
-        let path = folder.free_name("snakes-and-stairs", "png");
-        store_picture(&path, &picture).map(|()| path)
-    });
+    let file = run.context.saves.pictures().new_file("snakes-and-stairs", "png");
+    let kept = file.and_then(|path| store_picture(&path, &picture).map(|()| path));
     match kept {
         Ok(path) => {
             let text = format!("Picture saved to {}", path.display());

@@ -201,7 +201,7 @@ fn follow(mut rig: ResMut<CameraRig>, lanes: Query<Ref<Lane>>, time: Res<Time<Re
     let goal = middle_of(chosen.map(|lane| of_one(&lane)));
     match rig.anchor {
         None => rig.anchor = Some(goal),
-        Some(anchor) if rig.follows => {
+        Some(anchor) if rig.follows() => {
             let share = 1.0 - (1.0 + FOLLOW_PER_S * time.delta_secs()).recip();
             // The camera stops at a small distance. Otherwise a paused picture would keep changing by single pixels.
             let is_there = anchor.distance(goal) < FOLLOWED_M;
@@ -239,7 +239,7 @@ fn glide(
         covers.clear();
         covers.extend(area.covers());
     }
-    if rig.follows {
+    if rig.follows() {
         let followed = lanes.iter().filter(|lane| !lane.is_ghost);
         for lane in followed.filter(|lane| rig.lane.is_none_or(|of| of == lane.number)) {
             let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);

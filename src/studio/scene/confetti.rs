@@ -136,15 +136,16 @@ mod tests {
 
     #[test]
     fn confetti_flies_after_a_landing_that_was_played_and_not_after_a_jump() {
-        assert_eq!(celebrated(&[2.4, 2.9, 3.1, 3.5], true), [2]);
-        assert_eq!(celebrated(&[2.4, 2.9], true), Vec::<usize>::new(), "not landed yet");
-        assert_eq!(
-            celebrated(&[0.1, 3.1, 3.2], true),
-            Vec::<usize>::new(),
-            "a jump over the landing"
-        );
-        assert_eq!(celebrated(&[2.9, 3.1, 1.0, 4.0], true), Vec::<usize>::new(), "a jump back");
-        assert_eq!(celebrated(&[2.9, 3.1], false), Vec::<usize>::new(), "held");
+        for (times_s, is_playing, lanes) in [
+            (&[2.4, 2.9, 3.1, 3.5][..], true, &[2][..]),
+            // Not landed yet, a jump over the landing, a jump back, and held.
+            (&[2.4, 2.9], true, &[]),
+            (&[0.1, 3.1, 3.2], true, &[]),
+            (&[2.9, 3.1, 1.0, 4.0], true, &[]),
+            (&[2.9, 3.1], false, &[]),
+        ] {
+            assert_eq!(celebrated(times_s, is_playing), lanes, "{times_s:?}");
+        }
     }
 
     #[test]

@@ -44,9 +44,8 @@ const SHORTEST_M: f32 = 1.0;
 
 /// Returns the meshes of the fittings: those of wood, the wall, the white details, the lamps, and their light.
 pub(super) fn fittings(stairs: &Stairs) -> [Mesh; 5] {
-    let solids = [railing(stairs), wall(stairs), cheques(stairs), doorway(stairs)];
-    let [wood, wall, white, lamps] = solids.map(to_mesh);
-    [wood, wall, white, lamps, shine(stairs)]
+    let [wall, white, lamps] = goal(stairs).map(to_mesh);
+    [to_mesh(railing(stairs)), wall, white, lamps, shine(stairs)]
 }
 
 /// Builds the railing on the left, which is behind the snake in the default view.
@@ -87,54 +86,34 @@ fn railing(stairs: &Stairs) -> MeshBuilder {
     solid
 }
 
-/// Builds the lit doorway, and the lamps on the posts of the finish and below its board.
-fn doorway(stairs: &Stairs) -> MeshBuilder {
-    let mut solid = MeshBuilder::default();
-    let [width_m, height_m] = door_m(stairs);
-    let front_m = stairs.end_y_m() - WALL_THICK_M - PAINT_M;
-    let middle = Vec3::new(0.0, front_m, stairs.height_m(stairs.steps) + height_m / 2.0);
-    solid.sheet(middle, Vec3::X * width_m / 2.0, Vec3::Z * height_m / 2.0);
-    if has_finish(stairs) {
-        let below_board =
-            Vec3::new(0.0, finish_y_m(stairs), stairs.height_m(stairs.steps) + FINISH_M);
-        let half = Vec3::X * (stairs.width_m / 2.0 - INSIDE_M);
-        solid.cylinder(below_board - half, below_board + half, LAMP_M / 4.0);
-        for end in [-half, half] {
-            solid.ball(below_board + end + Vec3::Z * (BOARD_M + LAMP_M), LAMP_M, BALL_SIDES);
-        }
-    }
-    solid
-}
-
 /// Builds the light that falls out of the door onto the landing and onto the wall around the door.
 fn shine(stairs: &Stairs) -> Mesh {
-    let mut solid = MeshBuilder::default();
     let [width_m, height_m] = door_m(stairs);
     let (front_m, top_m) = (stairs.end_y_m() - WALL_THICK_M, stairs.height_m(stairs.steps));
     let last_m = stairs.step_tread_m(stairs.steps.saturating_sub(1));
     let reach_m = SHINE_M.min((stairs.landing_m + last_m - WALL_THICK_M) * 0.8).max(0.0);
     let half_m = stairs.width_m / 2.0;
     let [on_floor, on_wall] = [top_m + PAINT_M * 1.5, front_m - PAINT_M];
-    solid.patch(8, 6, |column, row| {
+    let mut lit = MeshBuilder::default();
+    lit.patch(8, 6, |column, row| {
         let (across, along) = (column as f32 / 4.0 - 1.0, 1.0 - row as f32 / 6.0);
         let x_m = across * (width_m / 2.0 + (half_m - width_m / 2.0) * along);
         [Vec3::new(x_m, front_m - reach_m * along, on_floor), Vec3::Z]
     });
-    solid.patch(24, 4, |side, ring| {
+    lit.patch(24, 4, |side, ring| {
         let (sin, cos) = libm::sincosf(std::f32::consts::PI * (1.0 - side as f32 / 24.0));
         let far = ring as f32 / 4.0;
         let x_m = cos * (width_m / 2.0 + (half_m - width_m / 2.0) * far);
         let z_m = sin * (height_m + (WALL_M - height_m) * far);
         [Vec3::new(x_m, on_wall, top_m + z_m), Vec3::NEG_Y]
     });
-    to_fading_mesh(solid, |at| {
-        let out_m = Vec2::new((at.x.abs() - width_m / 2.0).max(0.0), front_m - at.y).length();
-        let is_on_wall = at.y > on_wall - PAINT_M / 2.0 && at.z > on_floor + PAINT_M;
-        let far = if is_on_wall {
-            let above = ((at.z - top_m - height_m) / (WALL_M - height_m)).max(0.0);
-            above.max((at.x.abs() - width_m / 2.0) / (half_m - width_m / 2.0).max(0.01))
+    let out_m = |at: &Vec3| (at.x.abs() - width_m / 2.0).max(0.0);
+    to_fading_mesh(lit, |at| {
+        let far = if at.z == on_floor {
+            Vec2::new(out_m(at), front_m - at.y).length() / reach_m.max(0.01)
         } else {
-            out_m / reach_m.max(0.01)
+            let above = ((at.z - top_m - height_m) / (WALL_M - height_m)).max(0.0);
+            above.max(out_m(at) / (half_m - width_m / 2.0).max(0.01))
         };
         let left = (1.0 - far).clamp(0.0, 1.0);
         SHINE * left * left
@@ -146,56 +125,50 @@ fn door_m(stairs: &Stairs) -> [f32; 2] {
     [DOOR_M[0].min(stairs.width_m * 0.6), DOOR_M[1]]
 }
 
-/// Builds the wall at the end of the landing, and the posts and the board of the finish.
-fn wall(stairs: &Stairs) -> MeshBuilder {
-    let mut solid = MeshBuilder::default();
-    let top_m = stairs.height_m(stairs.steps);
-    let half_m = stairs.width_m / 2.0;
+/// Builds the parts of the goal by their materials: the wall at the end of the landing, with the posts and the board of the
+/// finish; in white, the chequered line on the floor, the squares on both sides of the board, and the door's frame; and as
+/// lamps, the lit doorway, and the lamps on the posts and below the board.
+fn goal(stairs: &Stairs) -> [MeshBuilder; 3] {
+    let [mut wall, mut white, mut lamps] = <[MeshBuilder; 3]>::default();
+    let (top_m, half_m) = (stairs.height_m(stairs.steps), stairs.width_m / 2.0);
     let middle = Vec3::new(0.0, stairs.end_y_m() - WALL_THICK_M / 2.0, top_m + WALL_M / 2.0);
-    solid.rounded_box(middle, Vec3::new(stairs.width_m, WALL_THICK_M, WALL_M), 0.03, 1);
-    if has_finish(stairs) {
-        let y_m = finish_y_m(stairs);
-        for side in [1.0, -1.0] {
-            let foot = Vec3::new((half_m - INSIDE_M) * side, y_m, top_m);
-            solid.cylinder(foot, foot + Vec3::Z * (FINISH_M + BOARD_M), 0.07);
+    wall.rounded_box(middle, Vec3::new(stairs.width_m, WALL_THICK_M, WALL_M), 0.03, 1);
+    let threshold = Vec3::new(0.0, stairs.end_y_m() - WALL_THICK_M, top_m);
+    let [door_width_m, door_height_m] = door_m(stairs);
+    let middle = threshold + Vec3::new(0.0, -PAINT_M, door_height_m / 2.0);
+    lamps.sheet(middle, Vec3::X * door_width_m / 2.0, Vec3::Z * door_height_m / 2.0);
+    let last = stairs.steps.saturating_sub(1);
+    if stairs.landing_m + stairs.step_tread_m(last) - stairs.step_slope_m(last) >= SHORTEST_M {
+        let floor = Vec3::new(0.0, finish_y_m(stairs), top_m);
+        let below_board = floor + Vec3::Z * FINISH_M;
+        let half = Vec3::X * (half_m - INSIDE_M);
+        lamps.cylinder(below_board - half, below_board + half, LAMP_M / 4.0);
+        for end in [half, -half] {
+            wall.cylinder(floor + end, below_board + end + Vec3::Z * BOARD_M, 0.07);
+            lamps.ball(below_board + end + Vec3::Z * (BOARD_M + LAMP_M), LAMP_M, BALL_SIDES);
         }
-        // The board, which has squares on both sides.
-        let middle = Vec3::new(0.0, y_m, top_m + FINISH_M + BOARD_M / 2.0);
-        solid.rounded_box(middle, Vec3::new(stairs.width_m, 0.06, BOARD_M), 0.01, 1);
-    }
-    solid
-}
-
-/// Builds the chequered line on the floor, the squares on both sides of the board above it, and the door's frame.
-fn cheques(stairs: &Stairs) -> MeshBuilder {
-    let mut solid = MeshBuilder::default();
-    let top_m = stairs.height_m(stairs.steps);
-    let y_m = finish_y_m(stairs);
-    if has_finish(stairs) {
-        let floor = Vec3::new(0.0, y_m + LINE_M / 2.0, top_m + PAINT_M);
-        let board = Vec3::new(0.0, y_m, top_m + FINISH_M + BOARD_M / 2.0);
+        let board = below_board + Vec3::Z * BOARD_M / 2.0;
+        wall.rounded_box(board, Vec3::new(stairs.width_m, 0.06, BOARD_M), 0.01, 1);
+        let line = floor + Vec3::new(0.0, LINE_M / 2.0, PAINT_M);
         let out = Vec3::Y * 0.036;
-        let half_width = stairs.width_m / 2.0;
         for (middle, right, up) in [
-            (floor, Vec3::X, Vec3::Y * LINE_M / 2.0),
+            (line, Vec3::X, Vec3::Y * LINE_M / 2.0),
             (board - out, Vec3::X, Vec3::Z * BOARD_M / 2.0),
             (board + out, Vec3::NEG_X, Vec3::Z * BOARD_M / 2.0),
         ] {
-            squares(&mut solid, middle, right * half_width, up);
+            squares(&mut white, middle, right * half_m, up);
         }
     }
     // A bright frame around the door.
-    solid.tone(Vec3::ONE);
-    let [door_width_m, door_height_m] = door_m(stairs);
-    let front_m = stairs.end_y_m() - WALL_THICK_M;
+    white.tone(Vec3::ONE);
     for side in [1.0, -1.0] {
-        let post =
-            Vec3::new((door_width_m / 2.0 + 0.06) * side, front_m, top_m + door_height_m / 2.0);
-        solid.rounded_box(post, Vec3::new(0.12, 0.08, door_height_m), 0.01, 1);
+        let aside_m = (door_width_m / 2.0 + 0.06) * side;
+        let post = threshold + Vec3::new(aside_m, 0.0, door_height_m / 2.0);
+        white.rounded_box(post, Vec3::new(0.12, 0.08, door_height_m), 0.01, 1);
     }
-    let lintel = Vec3::new(0.0, front_m, top_m + door_height_m + 0.06);
-    solid.rounded_box(lintel, Vec3::new(door_width_m + 0.24, 0.08, 0.12), 0.01, 1);
-    solid
+    let lintel = threshold + Vec3::Z * (door_height_m + 0.06);
+    white.rounded_box(lintel, Vec3::new(door_width_m + 0.24, 0.08, 0.12), 0.01, 1);
+    [wall, white, lamps]
 }
 
 /// Adds two rows of white and dark squares around `middle`. `right` and `up` lead from the middle to the edges.
@@ -227,18 +200,13 @@ pub(super) fn gate(stairs: &Stairs) -> Option<[Vec3; 2]> {
     Some([middle, Vec3::new(stairs.width_m / 2.0, BEHIND_EDGE_M, (top_m - last_m) / 2.0)])
 }
 
-/// Returns whether the landing is deep enough for a finish.
-fn has_finish(stairs: &Stairs) -> bool {
-    let last = stairs.steps.saturating_sub(1);
-    stairs.landing_m + stairs.step_tread_m(last) - stairs.step_slope_m(last) >= SHORTEST_M
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn parts(stairs: &Stairs) -> [MeshBuilder; 4] {
-        [railing(stairs), wall(stairs), cheques(stairs), doorway(stairs)]
+        let [wall, white, lamps] = goal(stairs);
+        [railing(stairs), wall, white, lamps]
     }
 
     #[test]

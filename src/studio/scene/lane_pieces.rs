@@ -3,7 +3,7 @@
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::prelude::*;
 
-use super::cache::SceneCache;
+use super::cache::cached;
 use super::dents::{self, Dent};
 use super::landing::fittings;
 use super::lane_marks::{LaneMark, stripes};
@@ -23,7 +23,7 @@ pub(super) fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     (props, lettering, theme): (Res<Props>, Res<TextMeshes>, Res<Theme>),
     mut surfaces: ResMut<SurfaceMaterials>,
-    mut last: Local<SceneCache<Stairs, [Handle<Mesh>; 7]>>,
+    mut last: Local<Vec<(Stairs, [Handle<Mesh>; 7])>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut images: ResMut<Assets<Image>>,
@@ -53,12 +53,13 @@ pub(super) fn build(
                 return;
             }
             // Lanes side by side usually have the same stairs.
-            let [solid, glow, wood, wall, white, lamps, shine] = last.get(stairs, 1, || {
-                let [wood, wall, white, lamps, shine] = fittings(stairs);
-                let solid = to_tiled_mesh(solid(stairs), TILE_M);
-                [solid, step_edges::glow(stairs), wood, wall, white, lamps, shine]
-                    .map(|mesh| meshes.add(mesh))
-            });
+            let [solid, glow, wood, wall, white, lamps, shine] =
+                cached(&mut last, stairs, 1, || {
+                    let [wood, wall, white, lamps, shine] = fittings(stairs);
+                    let solid = to_tiled_mesh(solid(stairs), TILE_M);
+                    [solid, step_edges::glow(stairs), wood, wall, white, lamps, shine]
+                        .map(|mesh| meshes.add(mesh))
+                });
             parent.spawn((piece(&solid, &on_stairs), NotShadowCaster));
             parent.spawn((piece(&solid, &props.caster), NotShadowReceiver));
             parent.spawn(piece(&wood, &props.wood));

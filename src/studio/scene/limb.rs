@@ -166,15 +166,18 @@ impl LimbShape {
         let (thickness, half) = (self.thickness_m(), self.size.y / 2.0);
         let [front, rear] = self.cuts_m();
         solid.tone(Vec3::ONE);
-        if self.has_own_hinge {
-            let (joint, drum) = (Vec3::Y * half, Vec3::X * (self.size.x * 0.34));
-            solid.cylinder(joint - drum, joint + drum, thickness * OWN_HINGE);
+        // Place of the bend axis along y, and radii of its drum and its pin as fractions of the thickness.
+        let (axis_y, drum, pin) = match self.has_own_hinge {
+            true => (half, OWN_HINGE, OWN_HINGE * 0.5),
+            false => (-half, 0.2, 0.085),
+        };
+        let (joint, has_hinge) = (Vec3::Y * axis_y, self.has_rear || self.has_own_hinge);
+        if has_hinge {
+            // The drum fills the gap that a strong bend opens.
+            let end = Vec3::X * (self.size.x * 0.34);
+            solid.cylinder(joint - end, joint + end, thickness * drum);
         }
         if self.has_rear {
-            // The drum fills the gap that a strong bend opens.
-            let joint = Vec3::Y * -half;
-            let drum = Vec3::X * (self.size.x * 0.34);
-            solid.cylinder(joint - drum, joint + drum, thickness * 0.2);
             for side in [1.0, -1.0] {
                 // The lug on each side holds the pin.
                 let lug = Vec3::new(side * self.size.x * 0.42, -half + rear * 0.9, 0.0);
@@ -188,13 +191,11 @@ impl LimbShape {
         } else {
             self.eyes().add_pupils_to(&mut solid, BALL_SIDES);
         }
-        if self.has_rear || self.has_own_hinge {
+        if has_hinge {
             // The bend axis is a bright pin that stands out at both sides.
             solid.tone(AXIS_TONE);
-            let joint = Vec3::Y * if self.has_own_hinge { half } else { -half };
             let end = Vec3::X * (self.size.x / 2.0 + PIN_END_M);
-            let radius = if self.has_own_hinge { OWN_HINGE * 0.5 } else { 0.085 };
-            solid.cylinder(joint - end, joint + end, thickness * radius);
+            solid.cylinder(joint - end, joint + end, thickness * pin);
         }
         solid
     }

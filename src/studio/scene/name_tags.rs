@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 
 use super::camera::StageCamera;
-use super::overlays::{Overlays, fitness_line_end};
+use super::overlays::{Overlays, fitness_line_ends};
 use super::stage_view::StageView;
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::stage::lane::Lane;
@@ -71,7 +71,7 @@ fn draw(
     area: Res<StageArea>,
     mut sides: Local<Vec<usize>>,
 ) -> Result {
-    let shows_line = overlays.shows(Overlay::FitnessLine);
+    let shows_line = overlays.contains(&Overlay::FitnessLine);
     let racing = || lanes.iter().filter(|lane| !lane.is_ghost);
     let are_many = racing().nth(1).is_some();
     if !are_many && !shows_line {
@@ -91,7 +91,7 @@ fn draw(
                 let name = lane.staged.label();
                 (view.limb(lane, 0)?, format!("{name}  {}", lane.place_in_words()))
             } else {
-                let at = view.point_of(fitness_line_end(lane))?;
+                let at = view.point_of(fitness_line_ends(lane)[1])?;
                 let text = format!("middle block at {} m", decimals(lane.drawn_middle().y, 2));
                 (egui::Rect::from_pos(at), text)
             };

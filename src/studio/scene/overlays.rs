@@ -12,7 +12,7 @@ use crate::studio::stage::selection::Selection;
 use crate::studio::ui::theme::{Palette, Theme};
 
 /// Overlays that are visible.
-#[derive(Resource, Debug, Default)]
+#[derive(Resource, Debug, Default, Deref, DerefMut)]
 pub(crate) struct Overlays(BTreeSet<Overlay>);
 
 /// Gizmo group of lines that are drawn in front of everything.
@@ -20,21 +20,6 @@ pub(crate) struct Overlays(BTreeSet<Overlay>);
 struct OnTop;
 
 impl Overlays {
-    /// Returns whether an overlay is visible.
-    pub fn shows(&self, overlay: Overlay) -> bool {
-        self.0.contains(&overlay)
-    }
-
-    /// Returns whether any overlay is visible.
-    pub fn shows_any(&self) -> bool {
-        !self.0.is_empty()
-    }
-
-    /// Shows an overlay.
-    pub fn show(&mut self, overlay: Overlay) {
-        self.0.insert(overlay);
-    }
-
     /// Shows or hides an overlay.
     pub fn toggle(&mut self, overlay: Overlay) {
         if !self.0.remove(&overlay) {
@@ -77,7 +62,7 @@ fn draw(
 ) {
     let palette = theme.palette();
     for (entity, lane) in &lanes {
-        let draws = |overlay| overlays.shows(overlay) && !lane.is_ghost;
+        let draws = |overlay| overlays.contains(&overlay) && !lane.is_ghost;
         if draws(Overlay::Contacts) {
             contacts(lane, palette, &mut on_top);
         }
@@ -197,27 +182,19 @@ fn bent_arrow(
     gizmos.arrow(before, end, color).with_tip_length(tip_m);
 }
 
-/// Returns the middle of the fitness line in its lane, in metres.
-fn fitness_line_middle(lane: &Lane) -> Vec3 {
-    let y_m = lane.drawn_middle().y;
-    Vec3::new(0.0, y_m, lane.trial().stairs.surface_z_m(0.0, y_m) + ABOVE_M)
-}
-
-/// Returns the right end of the fitness line in the scene, in metres, where its label is drawn.
-pub(crate) fn fitness_line_end(lane: &Lane) -> Vec3 {
-    let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
-    fitness_line_middle(lane) + half_width + lane.offset()
+/// Returns the left and the right end of the fitness line in the scene, in metres. Its label is drawn at the right end.
+pub(crate) fn fitness_line_ends(lane: &Lane) -> [Vec3; 2] {
+    let (y_m, stairs) = (lane.drawn_middle().y, &lane.trial().stairs);
+    let middle = Vec3::new(0.0, y_m, stairs.surface_z_m(0.0, y_m) + ABOVE_M) + lane.offset();
+    [-0.5, 0.5].map(|side| middle + Vec3::X * (stairs.width_m * side))
 }
 
 /// Draws a line across the lane below the centre of the middle limb, and a line from there up to the centre.
 fn fitness_line(lane: &Lane, palette: &Palette, gizmos: &mut Gizmos<OnTop>) {
-    let middle = lane.drawn_middle();
-    let half_width = Vec3::X * (lane.trial().stairs.width_m / 2.0);
+    let ([left, right], middle) = (fitness_line_ends(lane), lane.drawn_middle() + lane.offset());
     let color = in_scene(palette.accent);
-    let on_floor = fitness_line_middle(lane);
-    let at = on_floor + lane.offset();
-    gizmos.line(at - half_width, at + half_width, color);
-    gizmos.line(on_floor.with_x(middle.x) + lane.offset(), middle + lane.offset(), color);
+    gizmos.line(left, right, color);
+    gizmos.line(left.with_x(middle.x), middle, color);
 }
 
 #[cfg(test)]

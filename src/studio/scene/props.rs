@@ -203,11 +203,6 @@ fn shaded_cube() -> Mesh {
     mesh.with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
 }
 
-/// Returns the transform that scales the unit cube to a box.
-pub(crate) fn box_transform(centre: Vec3, size: Vec3) -> Transform {
-    Transform::from_translation(centre).with_scale(size)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -199,29 +199,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_software_rendering_starts_without_smooth_edges() {
-        assert_eq!(for_device(DeviceType::Cpu), Quality::Fast);
-        assert_eq!(for_device(DeviceType::DiscreteGpu), Quality::Beautiful);
-        for device in [DeviceType::IntegratedGpu, DeviceType::VirtualGpu, DeviceType::Other] {
-            assert_eq!(for_device(device), Quality::Smooth);
-        }
-    }
-
-    #[test]
-    fn the_beautiful_picture_is_not_offered_without_a_graphics_card() {
-        let names = |device: DeviceType| {
+    fn each_device_has_its_first_step_and_offers_beauty_only_with_a_graphics_card() {
+        assert_eq!(StageQuality::default().now(), Quality::Smooth, "before the device is known");
+        let [fast, smooth, beautiful] = Quality::ALL;
+        for (device, steps) in [
+            (DeviceType::Cpu, [fast, smooth, fast, smooth]),
+            (DeviceType::DiscreteGpu, [beautiful, fast, smooth, beautiful]),
+            (DeviceType::IntegratedGpu, [smooth, beautiful, fast, smooth]),
+            (DeviceType::VirtualGpu, [smooth, beautiful, fast, smooth]),
+            (DeviceType::Other, [smooth, beautiful, fast, smooth]),
+        ] {
             let mut quality = StageQuality::default();
             quality.suit(device);
-            let mut names = vec![quality.now()];
-            for _ in 0..3 {
+            let chosen = [(); 4].map(|()| {
+                let now = quality.now();
                 quality.choose_next();
-                names.push(quality.now());
-            }
-            names
-        };
-        let [fast, smooth, beautiful] = Quality::ALL;
-        assert_eq!(names(DeviceType::Cpu), [fast, smooth, fast, smooth]);
-        assert_eq!(names(DeviceType::DiscreteGpu), [beautiful, fast, smooth, beautiful]);
+                now
+            });
+            assert_eq!(chosen, steps, "{device:?}");
+        }
     }
 
     #[test]
@@ -234,13 +230,5 @@ mod tests {
         assert!(!slow_after(34, 10_000), "30 frames per second");
         assert!(slow_after(50, 130) && !slow_after(50, 100), "six seconds at 20 frames per second");
         assert!(!slow_after(900, 100), "a hidden window");
-    }
-
-    #[test]
-    fn a_chosen_step_replaces_the_automatic_one() {
-        let mut quality = StageQuality::default();
-        assert_eq!(quality.now(), Quality::Smooth);
-        quality.chosen = Some(Quality::Beautiful);
-        assert_eq!(quality.now(), Quality::Beautiful);
     }
 }

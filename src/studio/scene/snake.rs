@@ -7,7 +7,7 @@ use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::prelude::*;
 
-use super::cache::SceneCache;
+use super::cache::cached;
 use super::lane_marks::LaneMark;
 use super::limb::LimbShape;
 use super::props::{Props, piece};
@@ -38,7 +38,7 @@ const MAX_SHAPES: usize = 64;
 fn build(
     lanes: Query<(Entity, &Lane), Added<Lane>>,
     (props, mode): (Res<Props>, Res<StageMode>),
-    mut shapes: Local<SceneCache<LimbShape, LimbMeshes>>,
+    mut shapes: Local<Vec<(LimbShape, LimbMeshes)>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut bind_poses: ResMut<Assets<SkinnedMeshInverseBindposes>>,
     mut commands: Commands,
@@ -82,7 +82,7 @@ fn build(
                 has_own_hinge: body.is_branching() && body.joint_before(limb).is_some_and(bends),
                 parts: parts.len(),
             };
-            let shapes = shapes.get(&shape, MAX_SHAPES, || {
+            let shapes = cached(&mut shapes, &shape, MAX_SHAPES, || {
                 let solids = [shape.block(), shape.white(), shape.dark(), shape.collar()];
                 let bind_poses = bind_poses.add(shape.bind_poses());
                 (solids.map(|solid| meshes.add(shape.mesh_of(solid))), bind_poses)

@@ -6,7 +6,7 @@ use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
 use super::meshes::to_fading_mesh;
-use super::props::{Props, box_transform, piece};
+use super::props::{Props, piece};
 use crate::studio::stage::lane::Lane;
 use snakes_core::world::Stairs;
 use snakes_lab::mesh::MeshBuilder;
@@ -33,14 +33,16 @@ pub(super) fn spawn(
     glow: &Handle<Mesh>,
 ) {
     for step in 0..stairs.steps {
-        let edge = edge(stairs, step);
+        // The middle of the step's front edge, or of the edge from which the step leads down.
+        let [y_m, z_m] = stairs.edge_m(step);
+        let edge = Vec3::new(0.0, y_m, z_m);
         let size = Vec3::new(stairs.width_m + OUT_M, DEPTH_M, HEIGHT_M);
         let ahead = if stairs.step_rise_m(step) < 0.0 { -1.0 } else { 1.0 };
         let to_middle = Vec3::new(0.0, (DEPTH_M / 2.0 - OUT_M) * ahead, OUT_M - HEIGHT_M / 2.0);
         lane.spawn((
             StepEdge(step),
             piece(&props.cube, &props.dark_strip),
-            box_transform(edge + to_middle, size),
+            Transform::from_translation(edge + to_middle).with_scale(size),
             NotShadowCaster,
         ));
         lane.spawn((
@@ -53,12 +55,6 @@ pub(super) fn spawn(
             NotShadowCaster,
         ));
     }
-}
-
-/// Returns the middle of a step's front edge, or of the edge from which the step leads down.
-fn edge(stairs: &Stairs, step: u32) -> Vec3 {
-    let [y_m, z_m] = stairs.edge_m(step);
-    Vec3::new(0.0, y_m, z_m)
 }
 
 /// Builds the glow of a strip: two patches over the tread and down the riser that fade out away from the edge.

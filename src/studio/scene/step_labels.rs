@@ -33,9 +33,9 @@ pub(super) fn labels(lane: &Lane, lettering: &TextMeshes) -> Mesh {
     let mut writing = lettering.begin();
     if lane.number == 0 {
         // Only the nearest lane is labelled. The scale's large digits need less contrast than small ones.
-        writing.thin(SCALE_OPACITY);
+        writing.opacity = SCALE_OPACITY;
         scale(&mut writing, lane);
-        writing.thin(1.0);
+        writing.opacity = 1.0;
     }
     numbers(&mut writing, &lane.trial().stairs);
     writing.into_mesh()

@@ -11,18 +11,13 @@ use snakes_core::world::Surface;
 /// Look of a surface. All fields are shares from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SurfaceLook {
-    /// Share of ice: pale, for little friction.
-    pub ice: f32,
-    /// Share of glue: amber, for much friction.
-    pub glue: f32,
+    /// Shares of the layers on the stone, in the order in which they cover each other:
+    /// ice, pale, for little friction; glue, amber, for much friction; rubber, with flecks, for a hard surface from which
+    /// limbs bounce; a woven mat, for a surface that yields deeply and springs back; mud, for a surface that yields
+    /// without springing back, and damps.
+    pub layers: [f32; 5],
     /// Share of resin in the colour of glue: darker, for so much friction that nothing slides.
     pub resin: f32,
-    /// Share of rubber: with flecks, for a hard surface from which limbs bounce.
-    pub rubber: f32,
-    /// Share of a woven mat, for a surface that yields deeply and springs back.
-    pub woven: f32,
-    /// Share of mud, for a surface that yields without springing back, and damps.
-    pub mud: f32,
     /// Softness of the surface: how far limbs sink in and leave dents.
     pub soft: f32,
     /// Share of a wet film, for a surface that creeps under load.
@@ -57,57 +52,38 @@ impl SurfaceLook {
         let sinks = soft * (1.0 - springs_back) * (0.3 + 0.7 * damped);
         let mud = 1.0 - (1.0 - sinks) * (1.0 - 0.7 * hard_damped);
 
-        // The order of the layers is that in which they cover each other.
-        let through = |values: [f32; 6]| {
-            let [stone, of_ice, of_glue, of_rubber, of_woven, of_mud] = values;
-            let layers = [
-                (of_ice, ice),
-                (of_glue, glue),
-                (of_rubber, rubber),
-                (of_woven, woven),
-                (of_mud, mud),
-            ];
-            layers.into_iter().fold(stone, |below: f32, (own, covers)| below.lerp(own, covers))
+        let layers = [ice, glue, rubber, woven, mud];
+        let through = |stone: f32, own: [f32; 5]| {
+            own.into_iter().zip(layers).fold(stone, |below, (own, covers)| below.lerp(own, covers))
         };
-        let dry_roughness = through([0.95, 0.10, 0.22, 0.70, 0.62, 0.80]);
+        let dry_roughness = through(0.95, [0.10, 0.22, 0.70, 0.62, 0.80]);
         Self {
-            ice,
-            glue,
+            layers,
             resin,
-            rubber,
-            woven,
-            mud,
             soft,
             wet,
-            speckle: through([1.0, 0.0, 0.0, 0.2, 0.0, 0.1]),
+            speckle: through(1.0, [0.0, 0.0, 0.2, 0.0, 0.1]),
             roughness: dry_roughness.lerp(dry_roughness.min(0.28), wet),
-            gloss: through([0.2, 1.0, 0.55, 0.3, 0.4, 0.3]).max(wet * 0.6),
+            gloss: through(0.2, [1.0, 0.55, 0.3, 0.4, 0.3]).max(wet * 0.6),
         }
     }
 
     /// Returns the colour of the surface in a theme.
     pub fn tint(&self, palette: &Palette) -> Color {
         let glue = palette.glue.mix(&palette.resin, self.resin);
-        let layers = [
-            (palette.ice, self.ice),
-            (glue, self.glue),
-            (palette.rubber, self.rubber),
-            (palette.woven, self.woven),
-            (palette.mud, self.mud),
-        ];
-        let dry =
-            layers.into_iter().fold(palette.stair, |below, (own, covers)| below.mix(&own, covers));
+        let layers = [palette.ice, glue, palette.rubber, palette.woven, palette.mud];
+        let layers = layers.into_iter().zip(self.layers);
+        let dry = layers.fold(palette.stair, |below, (own, covers)| below.mix(&own, covers));
         // Wetness darkens a surface, but not ice.
-        let soaked = 1.0 - 0.22 * self.wet * (1.0 - self.ice);
+        let soaked = 1.0 - 0.22 * self.wet * (1.0 - self.layers[0]);
         let linear = dry.to_linear();
         Color::linear_rgb(linear.red * soaked, linear.green * soaked, linear.blue * soaked)
     }
 
     /// Returns a key that is equal for looks that the eye cannot distinguish.
     pub fn key(&self) -> [u8; 11] {
-        let Self { ice, glue, resin, rubber, woven, mud, soft, wet, speckle, roughness, gloss } =
-            *self;
-        [ice, glue, resin, rubber, woven, mud, soft, wet, speckle, roughness, gloss]
+        let Self { layers: [ice, glue, rubber, woven, mud], resin, soft, wet, .. } = *self;
+        [ice, glue, rubber, woven, mud, resin, soft, wet, self.speckle, self.roughness, self.gloss]
             .map(|share| (share * LEVELS).round() as u8)
     }
 }
@@ -151,11 +127,13 @@ mod tests {
                 surfaces().into_iter().find(|(name, _)| *name == of).expect("in the list");
             SurfaceLook::of(&surface)
         };
-        assert!(look("ice").ice > 0.95 && look("ice").roughness < 0.15 && look("ice").gloss > 0.95);
-        assert!(look("glue").glue > 0.95 && look("glue").roughness < 0.3);
-        assert!(look("mud").mud > 0.8 && look("mud").wet > 0.3 && look("mud").soft > 0.95);
-        assert!(look("trampoline").woven > 0.95 && look("trampoline").mud < 0.05);
-        assert!(look("rubber").rubber > 0.7 && look("rubber").woven < 0.1);
+        let of = |name: &str| look(name).layers;
+        let [ice, glue, rubber, woven, mud] = [0, 1, 2, 3, 4];
+        assert!(of("ice")[ice] > 0.95 && look("ice").roughness < 0.15 && look("ice").gloss > 0.95);
+        assert!(of("glue")[glue] > 0.95 && look("glue").roughness < 0.3);
+        assert!(of("mud")[mud] > 0.8 && look("mud").wet > 0.3 && look("mud").soft > 0.95);
+        assert!(of("trampoline")[woven] > 0.95 && of("trampoline")[mud] < 0.05);
+        assert!(of("rubber")[rubber] > 0.7 && of("rubber")[woven] < 0.1);
         let stone = look("stone");
         assert!(stone.speckle > 0.95 && stone.roughness > 0.9 && stone.soft == 0.0, "{stone:?}");
     }

@@ -2,17 +2,20 @@
 
 use bevy::prelude::*;
 
-use super::cache::SceneCache;
+use super::cache::cached;
 use super::surface_look::SurfaceLook;
 use super::surface_texture::Grain;
 use crate::studio::ui::theme::Theme;
 use snakes_core::world::Surface;
 
+/// A look and its material.
+type LookMaterial = (SurfaceLook, Handle<StandardMaterial>);
+
 /// Cached materials and textures, by their look.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct SurfaceMaterials {
-    materials: SceneCache<[u8; 11], (SurfaceLook, Handle<StandardMaterial>)>,
-    textures: SceneCache<Grain, Handle<Image>>,
+    materials: Vec<([u8; 11], LookMaterial)>,
+    textures: Vec<(Grain, Handle<Image>)>,
 }
 
 /// Maximum number of cached materials and textures: more than lanes show at once. Dragging a slider creates many.
@@ -28,9 +31,10 @@ impl SurfaceMaterials {
         images: &mut Assets<Image>,
     ) -> Handle<StandardMaterial> {
         let look = SurfaceLook::of(surface);
-        let (_, material) = self.materials.get(&look.key(), MAX_CACHED, || {
+        let (_, material) = cached(&mut self.materials, &look.key(), MAX_CACHED, || {
             let grain = Grain::from(&look);
-            let texture = self.textures.get(&grain, MAX_CACHED, || images.add(grain.draw()));
+            let texture =
+                cached(&mut self.textures, &grain, MAX_CACHED, || images.add(grain.draw()));
             let material = materials.add(StandardMaterial {
                 base_color: look.tint(theme.palette()),
                 base_color_texture: Some(texture),
@@ -51,7 +55,7 @@ pub(super) fn dress(
     surfaces: Res<SurfaceMaterials>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    for (look, handle) in surfaces.materials.values() {
+    for (_, (look, handle)) in &surfaces.materials {
         if let Some(mut material) = materials.get_mut(handle) {
             material.base_color = look.tint(theme.palette());
         }
@@ -74,7 +78,7 @@ mod tests {
         assert_ne!(of(1.0), of(0.1));
         let seen: Vec<_> = (0..400).map(|part| of(0.02 + part as f32 * 0.4)).collect();
         assert_ne!(seen[0], seen[399]);
-        assert!(surfaces.materials.values().count() <= MAX_CACHED);
-        assert!(surfaces.textures.values().count() <= MAX_CACHED);
+        assert!(surfaces.materials.len() <= MAX_CACHED);
+        assert!(surfaces.textures.len() <= MAX_CACHED);
     }
 }

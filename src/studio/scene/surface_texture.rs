@@ -22,15 +22,18 @@ const LEVELS: f32 = 8.0;
 /// Function that returns the brightness of a kind of surface at a pixel, from 0 to 1.
 type Drawn = fn(usize, usize) -> f32;
 
-/// Shares of a look that affect its texture, in coarse steps, so that few textures are needed: those of speckle, ice, glue, rubber,
-/// woven mats and mud.
+/// Shares of a look that affect its texture, in coarse steps, so that few textures are needed: that of speckle, and those of the
+/// layers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Grain([u8; 6]);
 
 impl From<&SurfaceLook> for Grain {
     fn from(look: &SurfaceLook) -> Self {
-        let SurfaceLook { speckle, ice, glue, rubber, woven, mud, .. } = *look;
-        Self([speckle, ice, glue, rubber, woven, mud].map(|share| (share * LEVELS).round() as u8))
+        let [ice, glue, rubber, woven, mud] = look.layers;
+        Self(
+            [look.speckle, ice, glue, rubber, woven, mud]
+                .map(|share| (share * LEVELS).round() as u8),
+        )
     }
 }
 

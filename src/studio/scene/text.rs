@@ -47,7 +47,8 @@ pub(crate) struct TextMeshBuilder<'a> {
     solid: MeshBuilder,
     uvs: Vec<[f32; 2]>,
     colors: Vec<[f32; 4]>,
-    opacity: f32,
+    /// Opacity of the texts that are added next, as a fraction of the usual opacity.
+    pub opacity: f32,
 }
 
 /// Position and orientation of a text.
@@ -76,11 +77,6 @@ impl TextMeshes {
 }
 
 impl TextMeshBuilder<'_> {
-    /// Sets the opacity of the following text, as a fraction of the usual opacity.
-    pub fn thin(&mut self, opacity: f32) {
-        self.opacity = opacity;
-    }
-
     /// Adds a text with digits of this height, in metres.
     pub fn text(&mut self, text: &str, digit_height_m: f32, place: TextPlacement) {
         let metres = digit_height_m / self.atlas.digit_height;

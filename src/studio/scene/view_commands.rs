@@ -6,11 +6,9 @@ use bevy::prelude::*;
 use super::camera::rig::CameraRig;
 use super::overlays::Overlays;
 use super::quality::StageQuality;
-use crate::studio::commands::ViewCommand;
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::commands::overlay::Overlay;
-use crate::studio::commands::screenshot_area::ScreenshotArea;
-use crate::studio::state::shares::ShareLook;
+use crate::studio::commands::{ScreenshotArea, ViewCommand};
+use crate::studio::state::shares::StageLook;
 use crate::studio::ui::theme::Theme;
 
 /// System parameters that make up the state of the view.
@@ -25,12 +23,11 @@ pub(crate) struct ViewParams<'w> {
 
 impl ViewParams<'_> {
     /// Returns the look of the stage, for an exported film: camera mode, theme and overlays.
-    pub fn look(&self) -> ShareLook {
-        let shown = |overlay: &Overlay| self.overlays.shows(*overlay);
-        ShareLook {
+    pub fn look(&self) -> StageLook {
+        StageLook {
             camera: self.rig.camera_mode(),
             theme: *self.theme,
-            overlays: Overlay::ALL.into_iter().filter(shown).collect(),
+            overlays: self.overlays.iter().copied().collect(),
         }
     }
 

@@ -38,7 +38,7 @@ fn hold_worlds(
     mut worlds: Query<StagedWorld>,
     mut gizmos: Gizmos,
 ) {
-    lines.enabled = overlays.shows(Overlay::Wireframe);
+    lines.enabled = overlays.contains(&Overlay::Wireframe);
     if !lines.enabled {
         return;
     }
@@ -50,11 +50,11 @@ fn hold_worlds(
     }
 }
 
-/// Draws the contacts of the engine *lanes* in the style in which the plugin draws those of rapier: the gap or the
+/// Draws the contacts that rapier does not hold in the style in which the plugin draws those of rapier: the gap or the
 /// overlap of each point, and the normal.
 fn draw_contacts(lane: &Lane, gizmos: &mut Gizmos) {
     let style = DebugRenderStyle::default();
-    let contacts = lane.replay.simulation().map(|simulation| simulation.contacts_in_lanes());
+    let contacts = lane.replay.simulation().map(|simulation| simulation.contacts_beside_rapier());
     for contact in contacts.unwrap_or_default() {
         let [from, to] = contact.on_m.map(|at| at + lane.offset());
         let along = from + contact.normal * style.contact_normal_length;

@@ -16,7 +16,7 @@ const HOLD_S: f32 = 0.125;
 const SAMPLES_PER_S: u32 = 60;
 
 /// Samples of the latest contacts of a lane.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct ContactMeter {
     samples: VecDeque<ContactSample>,
     /// Number of physics steps from one sample to the next.
@@ -58,11 +58,10 @@ impl ContactMeter {
     pub fn new(steps_per_s: u32) -> Self {
         let steps = |time_s: f32| ((time_s * steps_per_s as f32) as u32).max(1);
         Self {
-            samples: VecDeque::new(),
             every_steps: (steps_per_s / SAMPLES_PER_S).max(1),
             span_steps: steps(SPAN_S),
             hold_steps: steps(HOLD_S),
-            last_step: 0,
+            ..Self::default()
         }
     }
 

@@ -115,17 +115,12 @@ pub(super) fn end_s<'a>(lanes: impl IntoIterator<Item = &'a Lane>) -> f64 {
     lanes.into_iter().map(Lane::end_s).fold(0.0, f64::max)
 }
 
-/// Builds lanes for champions, the first one nearest to the default camera. In a generation, all but the first are
-/// ghosts in its place.
+/// Builds lanes for champions, the first one nearest to the default camera, and reuses the computed steps of earlier lanes.
+/// In a generation, all but the first are ghosts in its place.
 ///
 /// # Errors
 /// Returns beside the lanes a message for each champion that cannot be shown, with the reason.
-pub(super) fn lanes(champions: Vec<StagedChampion>, mode: &StageMode) -> (Vec<Lane>, Vec<String>) {
-    lanes_after(champions, mode, &mut [])
-}
-
-/// Builds lanes for champions as [`lanes`] does, and reuses the computed steps of earlier lanes.
-fn lanes_after(
+pub(super) fn lanes(
     champions: Vec<StagedChampion>,
     mode: &StageMode,
     earlier: &mut [Mut<Lane>],
@@ -189,7 +184,7 @@ fn put_on_stage(
     let Some(Show { champions, mode }) = requests.read().last().cloned() else { return };
     champions.iter().for_each(|staged| explain_other_engine(staged, &mut notices));
     let (entities, mut earlier): (Vec<Entity>, Vec<Mut<Lane>>) = earlier.iter_mut().unzip();
-    let (lanes, problems) = lanes_after(champions, &mode, &mut earlier);
+    let (lanes, problems) = lanes(champions, &mode, &mut earlier);
     problems.into_iter().for_each(|problem| notices.problem(problem));
     if lanes.is_empty() {
         // If none of the new lanes can be built, the earlier ones stay.
@@ -259,7 +254,7 @@ fn differs_from_record(lane: &Lane) -> Option<String> {
             "This replay differs from its record ({:.2} instead of {:.2}): the file was \
              edited, or this machine computes different results (see snakes verify).",
             lane.evaluation().fitness,
-            lane.staged.fitness(),
+            recorded.fitness,
         )
     })
 }

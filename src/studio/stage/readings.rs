@@ -5,7 +5,7 @@ use super::replay::Replay;
 use snakes_core::world::{ContactForce, EnergyLost, JointState, JointTorque};
 
 /// Contacts, torques and joints of a lane after the last step. Empty for a recording.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Readings {
     /// Contact forces on the limbs after the last step.
     pub contacts: Vec<ContactForce>,
@@ -24,14 +24,8 @@ pub(crate) struct Readings {
 impl Readings {
     /// Creates the readings at the start of a replay with this number of physics steps per second.
     pub fn new(replay: &Replay, steps_per_s: u32) -> Self {
-        let mut readings = Self {
-            contacts: Vec::new(),
-            torques: Vec::new(),
-            joints: Vec::new(),
-            speeds_m_s: Vec::new(),
-            energy_lost: None,
-            meter: ContactMeter::new(steps_per_s),
-        };
+        let meter = ContactMeter::new(steps_per_s);
+        let mut readings = Self { meter, ..Self::default() };
         readings.update(replay);
         readings
     }

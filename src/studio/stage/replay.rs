@@ -59,9 +59,7 @@ impl Replay {
     /// from the start without a history. The effect of any pull is lost.
     pub fn go_to(&mut self, step: u32, staged: &StagedChampion, history: Option<&KeyframeHistory>) {
         match self {
-            Self::Simulated(rollout) => {
-                **rollout = undisturbed_at(step, staged, history);
-            }
+            Self::Simulated(rollout) => **rollout = undisturbed_at(step, staged, history),
             Self::Recorded(recorded) => {
                 recorded.step = step.min(recorded.last_step);
                 recorded.poses = recorded.recording.at(recorded.step as f32);

@@ -39,9 +39,4 @@ impl Selection {
         (self.lane, self.limb) = (lane, Some(limb));
         self.held = Some(held);
     }
-
-    /// Selects the first lane and no limb.
-    pub fn reset(&mut self) {
-        (self.lane, self.limb) = (0, None);
-    }
 }

@@ -292,16 +292,6 @@ impl StagedChampion {
         self.source
     }
 
-    /// Returns the generation that found the champion in its run; the first is 1.
-    pub fn generation(&self) -> u32 {
-        self.champion.origin.generation
-    }
-
-    /// Returns the recorded fitness of the champion.
-    pub fn fitness(&self) -> f32 {
-        self.champion.evaluation.fitness
-    }
-
     /// Returns the champion's short name.
     pub fn name(&self) -> &str {
         &self.name

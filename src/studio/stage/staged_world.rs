@@ -9,7 +9,7 @@ use bevy_rapier3d::prelude::{
     QueryFilter, RapierContextColliders, RapierContextJoints, RapierContextSimulation,
     RapierQueryPipeline, RapierRigidBodySet,
 };
-use bevy_rapier3d::rapier::dynamics::{ImpulseJointSet, RigidBodySet};
+use bevy_rapier3d::rapier::dynamics::{ImpulseJointSet, RigidBodyHandle, RigidBodySet};
 use bevy_rapier3d::rapier::geometry::{ColliderSet, DefaultBroadPhase, NarrowPhase, Ray};
 
 use super::lane::Lane;
@@ -45,8 +45,8 @@ impl<'w> StagedWorldItem<'w, '_> {
     pub fn hold_last_step(&mut self) {
         match self.lane.replay.simulation() {
             Some(simulation) => self.hold(simulation, simulation.poses()),
-            None => drop(self.hold_drawn()),
-        }
+            None => self.hold_drawn(),
+        };
     }
 
     /// Prepares the context for the lines of the collision shapes: the lane's world after the last step, or nothing for a
@@ -81,29 +81,31 @@ impl<'w> StagedWorldItem<'w, '_> {
             |queries| queries.query_pipeline.cast_ray(&ray, f32::MAX, true),
         )?;
         let body = self.colliders.colliders[hit].parent();
-        let part = drawn.parts().iter().position(|&part| Some(part) == body);
+        let part = drawn.iter().position(|&part| Some(part) == body);
         Some(RayHit { entity: self.entity, lane: self.lane, part, distance_m })
     }
 
-    /// Copies the world as it is drawn into the context, with the snake between two steps. Returns a simulation with
-    /// the snake at its start.
-    fn hold_drawn(&mut self) -> Simulation {
+    /// Copies the world as it is drawn into the context, with the snake between two steps. Returns the bodies of the parts, head first.
+    fn hold_drawn(&mut self) -> Vec<RigidBodyHandle> {
         let lane = self.lane;
         let plan = lane.trial().world_plan(&lane.staged.champion().genome);
-        let simulation = Simulation::new(&plan);
-        self.hold(&simulation, lane.drawn_poses());
-        simulation
+        self.hold(&Simulation::new(&plan), lane.drawn_poses())
     }
 
-    /// Copies a world into the context, with its parts in these poses, from head to tail.
-    fn hold(&mut self, simulation: &Simulation, poses: impl Iterator<Item = Pose>) {
-        let physics = simulation.physics();
+    /// Copies a world into the context, with its parts in these poses, from head to tail, and returns the bodies of the parts.
+    fn hold(
+        &mut self,
+        simulation: &Simulation,
+        poses: impl Iterator<Item = Pose>,
+    ) -> Vec<RigidBodyHandle> {
+        let world = simulation.in_rapier();
+        let physics = world.physics();
         self.context.narrow_phase = physics.narrow_phase.clone();
         self.joints.impulse_joints = physics.impulse_joints.clone();
         self.bodies.bodies = physics.bodies.clone();
         self.colliders.colliders = physics.colliders.clone();
         let (bodies, colliders) = (&mut self.bodies.bodies, &mut self.colliders.colliders);
-        for (&part, pose) in simulation.parts().iter().zip(poses) {
+        for (&part, pose) in world.bodies().iter().zip(poses) {
             bodies[part].set_position(pose, false);
         }
         let offset_m = self.lane.offset();
@@ -116,7 +118,8 @@ impl<'w> StagedWorldItem<'w, '_> {
             // bevy_rapier3d reads the entity of each collider, and panics if there is none.
             collider.user_data = self.entity.to_bits().into();
         }
-        // The colliders must be moved to their bodies, because the engine "lanes" moves only bodies.
+        // The colliders must be moved to their bodies, because only the bodies have these poses yet.
         bodies.propagate_modified_body_positions_to_colliders(colliders);
+        world.bodies().to_vec()
     }
 }

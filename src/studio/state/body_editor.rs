@@ -128,7 +128,14 @@ impl BodyEditor {
             BodyCommand::Redo => edited.step(false),
             BodyCommand::Tune => edited.tune()?,
             BodyCommand::Evolve => {
-                let champion = edited.unevaluated()?;
+                let mut champion = edited.unevaluated()?;
+                // A world that was changed for the next run stays.
+                let next = &run.next_settings().trial;
+                if *next != run.settings().trial {
+                    let unfit = |error| format!("The world of the next run does not fit: {error}");
+                    next.check_genome(&champion.genome).map_err(unfit)?;
+                    champion.trial = next.clone();
+                }
                 run.start_next_from(&champion, &format!("{}, edited", edited.original.name()))?;
                 run.begin_next()?;
                 self.edited = None;
@@ -162,8 +169,8 @@ fn own_blocks(original: &StagedChampion) -> Result<Genome, String> {
     let genome = &original.champion().genome;
     original.trial().with_own_blocks(genome).map_err(|error| match genome.controller.kind() {
         ControllerKind::Wave | ControllerKind::Gait => format!(
-            "In this snake's world a block cannot change alone: its joints have different settings, or joints or \
-             surfaces are soft ({error})"
+            "In this snake's world, joints differ from one another, or joints or surfaces are soft, so no block can change \
+             alone. If this snake is a copy in a comparison, Esc goes back to the original. ({error})"
         ),
         other => format!(
             "The controller of this snake, {}, cannot follow a changed body: only gaits and waves do",
@@ -175,8 +182,7 @@ fn own_blocks(original: &StagedChampion) -> Result<Genome, String> {
 impl Edited {
     /// Processes the result of a finished tuning.
     fn take_in_tuning(&mut self, notices: &mut Notices) {
-        let Some(result) = self.tuning.as_ref().and_then(BackgroundTask::poll) else { return };
-        self.tuning = None;
+        let Some(result) = BackgroundTask::take_result(&mut self.tuning) else { return };
         match result {
             Ok(Some(tuned)) => {
                 let unit = self.original.trial().fitness.unit();
@@ -211,10 +217,7 @@ impl Edited {
 
     /// Processes the result of a finished evaluation. Returns whether a preview is ready.
     fn take_in_preview(&mut self, notices: &mut Notices) -> bool {
-        let Some(result) = self.evaluation.as_ref().and_then(BackgroundTask::poll) else {
-            return false;
-        };
-        self.evaluation = None;
+        let Some(result) = BackgroundTask::take_result(&mut self.evaluation) else { return false };
         let failed = |reason| notices.problem(format!("This body cannot be simulated: {reason}"));
         self.ready = result.flatten().map_err(failed).ok();
         self.ready.is_some()
@@ -237,7 +240,7 @@ impl Edited {
 
     /// Checks whether the body can be simulated.
     fn check(&self) -> Result<(), String> {
-        self.original.trial().check_genome(&self.genome).map_err(|error| error.to_string())
+        Ok(self.original.trial().check_genome(&self.genome)?)
     }
 
     /// Replaces the genome, as a step that can be undone.

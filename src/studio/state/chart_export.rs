@@ -15,22 +15,21 @@ pub(crate) fn export(
     run: impl FnOnce() -> String,
 ) -> Result<PathBuf, String> {
     let ChartExport { figure, name, format, is_of_run } = export;
-    let folder = saves.exports();
-    folder.prepare().map_err(|error| error.to_string())?;
-    let free = |ending| folder.free_name(name, ending);
-    let stored = match format {
+    let new_file = |ending| saves.exports().new_file(name, ending);
+    match format {
         ChartFormat::Png => {
             let titled = is_of_run.then(|| titled(figure, &run()));
             let picture = plot::figure(titled.as_ref().unwrap_or(figure));
-            let (picture, path) = (picture.map_err(|error| error.to_string())?, free("png"));
-            store_picture(&path, &picture).map(|()| path)
+            let (picture, path) = (picture.map_err(|error| error.to_string())?, new_file("png")?);
+            store_picture(&path, &picture)?;
+            Ok(path)
         }
         ChartFormat::Csv => {
-            let path = free("csv");
-            store_csv(&path, &figure.table()).map(|()| path)
+            let path = new_file("csv")?;
+            store_csv(&path, &figure.table())?;
+            Ok(path)
         }
-    };
-    stored.map_err(|error| error.to_string())
+    }
 }
 
 /// Adds the name of the run to the figure's title, because in the window the name is outside the chart.

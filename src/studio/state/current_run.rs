@@ -20,7 +20,7 @@ use super::options::Options;
 use super::run_context::RunContext;
 use snakes_core::evolve::{Champion, IndividualId, RunPlan, Settings};
 use snakes_core::save::ExistingRun;
-use snakes_core::schema::SettingValue;
+use snakes_core::schema::{SettingValue, named_values};
 use snakes_lab::run::{
     Ancestor, BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource,
 };
@@ -34,17 +34,18 @@ const REMEMBERED_GENERATIONS: usize = 200;
 /// Individuals with descendants, by their place: generation and index.
 type Ancestors = BTreeMap<IndividualId, Arc<Ancestor>>;
 
-/// Status of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum RunStatus {
-    /// Prepared; nothing is evaluated yet.
-    Ready,
-    /// Evaluating a generation.
-    Running,
-    /// Evolution is paused.
-    Paused,
-    /// All generations are finished.
-    Finished,
+named_values! {
+    /// Status of a run.
+    pub enum RunStatus {
+        /// Nothing is evaluated yet.
+        Ready = "ready";
+        /// A generation is being evaluated.
+        Running = "running";
+        /// Evolution is paused.
+        Paused = "paused";
+        /// All generations are finished.
+        Finished = "finished";
+    }
 }
 
 /// The current run and its results.
@@ -159,11 +160,6 @@ impl CurrentRun {
     /// Returns the other runs of the saves folder, each with its readable name; `None` until the runs are listed.
     pub fn listed(&self) -> Option<impl Iterator<Item = &ListedRun>> {
         Some(self.others.runs.as_ref()?.iter().filter(|of| of.run.folder != self.source.folder))
-    }
-
-    /// Returns those of the other runs that were stopped and can be resumed; `None` until the runs are listed.
-    pub fn stopped(&self) -> Option<impl Iterator<Item = &ListedRun>> {
-        Some(self.listed()?.filter(|of| of.run.is_stopped()))
     }
 
     /// Returns the reports of the finished generations, the first generation first.
@@ -320,7 +316,7 @@ impl CurrentRun {
 
     /// Replaces the current run by the one in a folder, without starting it.
     fn replace_by(&mut self, folder: &Path) -> Result<(), String> {
-        let source = RunSource::in_folder(folder).map_err(|error| error.to_string())?;
+        let source = RunSource::in_folder(folder)?;
         self.plan_next = source.plan.clone();
         self.replace(source);
         Ok(())
@@ -371,6 +367,6 @@ impl CurrentRun {
 mod fixtures;
 #[cfg(test)]
 pub(crate) use fixtures::{
-    bodies_run, climber, compared_run, evolve, explored_run, landed_run, prepared_run, run_in,
-    small_run, species_run,
+    bodies_run, climber, compared_run, evolve, explored_run, landed_run, next_generation,
+    prepared_run, run_in, small_run, species_run,
 };

@@ -15,11 +15,10 @@ use super::lessons::write_worksheet;
 use super::library::Library;
 use super::new_file::offer_path;
 use super::undo::UndoHistory;
-use crate::studio::commands::Command;
-use crate::studio::commands::WindowCommand;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::commands::panel::PanelKind;
+use crate::studio::commands::{Command, WindowCommand};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::Show;
 use crate::studio::ui::notifications::Notices;
@@ -127,7 +126,7 @@ impl Files {
                 self.open(&path)?;
             }
             FileCommand::ShowSaves => {
-                library.saves.prepare().map_err(|error| error.to_string())?;
+                library.saves.prepare()?;
                 self.open(library.saves.path())?;
             }
             FileCommand::CopyPicture(path) => self.copying.start(Copied::Picture(path.clone()))?,
@@ -162,11 +161,9 @@ impl Files {
         });
         match self.copying.poll() {
             None => {}
-            Some((Copied::Picture(_), Ok(()))) => {
-                notices.update(COPIED, "The picture is in the clipboard.".to_owned());
-            }
-            Some((Copied::Path(_), Ok(()))) => {
-                notices.update(COPIED, "The path is in the clipboard.".to_owned());
+            Some((copied, Ok(()))) => {
+                let what = if matches!(copied, Copied::Path(_)) { "path" } else { "picture" };
+                notices.update(COPIED, format!("The {what} is in the clipboard."));
             }
             Some((Copied::Picture(path), Err(reason))) => notices.offer(
                 COPIED,

@@ -27,8 +27,7 @@ pub(crate) struct Following {
     run: u32,
     /// Whether a story is repeated after its end. This does not change what the stage shows.
     pub repeats: bool,
-    /// Whether the shown generation is the first to land. It stays until all its snakes have ended, so that the landing
-    /// can be watched.
+    /// Whether the best snake of the shown generation lands. It stays until all its snakes have ended, so that the landing can be watched.
     is_landing: bool,
     /// Generation that the stage shows, if any.
     shown: Option<u32>,
@@ -106,7 +105,10 @@ impl Following {
     pub fn tell_story(&mut self, run: &CurrentRun) -> Result<(), String> {
         let milestones = &run.milestones;
         if milestones.len() < 2 {
-            return Err("There is no story yet: wait for a second, better generation.".to_owned());
+            return Err(
+                "There is no story yet: it begins once a later generation beats the first."
+                    .to_owned(),
+            );
         }
         let chosen = evenly(milestones.len(), STORY_PARTS, STORY_PARTS);
         let generations = chosen.map(|index| milestones[index].generation).collect();
@@ -134,9 +136,7 @@ impl Following {
                     Some(shown) => next_of(milestones, shown)?,
                 };
                 self.is_new = false;
-                let first_landing = milestones.iter().find(|milestone| milestone.is_landed);
-                self.is_landing =
-                    first_landing.is_some_and(|first| first.generation == next.generation);
+                self.is_landing = next.is_landed;
                 Some(next.generation)
             }
             FollowPlan::Story { generations, next } => {
@@ -198,6 +198,7 @@ fn follow(
         (following.run, following.announced) = (run.number(), 0);
         following.follow_evolution();
         following.is_new = true;
+        playback.restart();
     }
     if following.holds && (playback.is_playing || run.status() != RunStatus::Running) {
         // The user plays the present champion, or evolution is not running.

@@ -3,26 +3,31 @@
 use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
+use super::options::Options;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::ui::notifications::Notices;
 use snakes_core::evolve::RunPlan;
 use snakes_core::save::{DEFAULT_PRESET, RunSummary};
 
 pub(super) fn plugin(app: &mut App) {
-    app.add_systems(Startup, list).add_systems(FixedUpdate, open);
+    app.add_systems(Startup, begin).add_systems(FixedUpdate, open);
 }
 
-/// Lists the runs, unless the user has named a run.
-fn list(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>) {
-    if run.context.offers_stopped_run {
-        notices.problems(run.list_runs().err());
-    }
+/// Lists the runs or, if the user has named a run, starts evolution at once.
+fn begin(mut run: ResMut<CurrentRun>, options: Res<Options>, mut notices: ResMut<Notices>) {
+    let begun = if options.offers_stopped_run { run.list_runs() } else { run.start() };
+    notices.problems(begun.err());
 }
 
 /// Opens the latest run, paused or finished, once the runs are listed. If the program was started with settings that the run does not
 /// have, starts its own run and offers the latest one.
-fn open(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, mut is_done: Local<bool>) {
-    if *is_done || !run.context.offers_stopped_run {
+fn open(
+    mut run: ResMut<CurrentRun>,
+    options: Res<Options>,
+    mut notices: ResMut<Notices>,
+    mut is_done: Local<bool>,
+) {
+    if *is_done || !options.offers_stopped_run {
         return;
     }
     // A list that cannot be read is reported, and the own run starts.
@@ -38,7 +43,7 @@ fn open(mut run: ResMut<CurrentRun>, mut notices: ResMut<Notices>, mut is_done: 
     let own = run.next_plan();
     let is_plain = run.context.presets.settings_of(&own.preset) == Some(&own.settings);
     // Without flags for settings, the user wants none in particular.
-    let is_any_wanted = is_plain && own.preset == DEFAULT_PRESET && !run.context.names_preset;
+    let is_any_wanted = is_plain && own.preset == DEFAULT_PRESET && !options.names_preset;
     let is_wanted = |of: &RunPlan| {
         let is_alike = of.preset == own.preset && (is_plain || of.settings == own.settings);
         is_any_wanted || is_alike
@@ -68,27 +73,32 @@ fn offer(run: &RunSummary, name: &str) -> (String, &'static str) {
 mod tests {
     use super::*;
     use crate::studio::state::current_run::{evolve, small_run};
-    use crate::studio::state::options::Options;
     use snakes_core::save::{ExistingRun, SavesFolder, load_preset};
     use snakes_lab::run::RunSource;
     use tempfile::TempDir;
 
-    /// Evolves one generation of a run of seed 1 with this number of generations, starts the studio with the run `own`, and waits until
-    /// `is_ready`.
+    /// Evolves one generation of a run of seed 1 with this number of generations, starts the studio, and waits until `is_ready`. The
+    /// studio's own run has the seed 2 and `own` generations, or the default preset and the seed 1.
     fn started(
         generations: u32,
-        own: impl Fn(&SavesFolder) -> RunSource,
+        own: Option<u32>,
         names_preset: bool,
         is_ready: impl Fn(&World) -> bool,
     ) -> (TempDir, App) {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         evolve(small_run(&saves, 1, generations), 1);
-        let run = own(&saves);
+        let settings = load_preset(DEFAULT_PRESET).expect("shipped").settings;
+        let plan = RunPlan::new(DEFAULT_PRESET, 1, settings);
+        let run = match own {
+            Some(generations) => small_run(&saves, 2, generations),
+            None => RunSource::in_saves(&saves, plan, ExistingRun::Keep),
+        };
         let options =
             Options { offers_stopped_run: true, names_preset, ..Options::of_test(run, saves) };
         let mut app = App::new();
         app.insert_resource(CurrentRun::new(&options))
+            .insert_resource(options)
             .init_resource::<Notices>()
             .add_plugins(bevy::time::TimePlugin)
             .add_plugins((crate::studio::state::current_run::events::plugin, plugin));
@@ -99,28 +109,15 @@ mod tests {
         (folder, app)
     }
 
-    /// Returns a run of the default preset with the seed 1.
-    fn default_run(saves: &SavesFolder) -> RunSource {
-        let settings = load_preset(DEFAULT_PRESET).expect("shipped").settings;
-        RunSource::in_saves(saves, RunPlan::new(DEFAULT_PRESET, 1, settings), ExistingRun::Keep)
-    }
-
     #[test]
     fn a_run_with_other_settings_is_offered_by_name_and_place() {
         // The own runs are too long to finish during the test, which would cause a message.
-        let small = |saves: &SavesFolder| small_run(saves, 2, 9_000);
-        let named: fn(&SavesFolder) -> RunSource = default_run;
-        for (generations, own, names_preset, ending, label) in [
-            (
-                10_000,
-                small as fn(&SavesFolder) -> RunSource,
-                false,
-                " m: stopped after generation 1 of 10000.",
-                "Continue",
-            ),
-            (1, small, false, ": finished after generation 1.", "Show it"),
-            (1, named, true, ": finished after generation 1.", "Show it"),
+        for (generations, own, ending, label) in [
+            (10_000, Some(9_000), " m: stopped after generation 1 of 10000.", "Continue"),
+            (1, Some(9_000), ": finished after generation 1.", "Show it"),
+            (1, None, ": finished after generation 1.", "Show it"),
         ] {
+            let names_preset = own.is_none();
             let is_told = |world: &World| world.resource::<Notices>().len() > 0;
             let (_folder, app) = started(generations, own, names_preset, is_told);
             let notices = app.world().resource::<Notices>();
@@ -139,15 +136,12 @@ mod tests {
             (10_000, RunStatus::Paused, RunCommand::Start),
             (1, RunStatus::Finished, RunCommand::Extend),
         ] {
-            let alike = |saves: &SavesFolder| small_run(saves, 2, generations);
             let is_open = |world: &World| {
                 let run = world.resource::<CurrentRun>();
                 (run.reports().len(), run.status()) == (1, status)
             };
-            for (is_default, command, seed) in [(false, go_on, 1), (true, RunCommand::New, 2)] {
-                let own = |saves: &SavesFolder| {
-                    if is_default { default_run(saves) } else { alike(saves) }
-                };
+            for (own, command, seed) in [(Some(generations), go_on, 1), (None, RunCommand::New, 2)]
+            {
                 let (_folder, mut app) = started(generations, own, false, is_open);
                 let said = app.world().resource::<Notices>().last().unwrap_or_default();
                 let is_told = said.starts_with("test 1, ") && said.contains(" is finished: ");

@@ -62,16 +62,12 @@ struct Current {
 struct Own {
     next: RunPlan,
     history: UndoHistory,
-    pace: Pace,
+    /// Method that lets the current run go on as before the lesson; `None` if it did not run.
+    go_on: Option<Resumption>,
 }
 
-/// Pace of the current run before the lesson: paused, running, or up to the end of a generation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Pace {
-    Running,
-    OneGeneration,
-    Held,
-}
+/// Method that lets a paused run go on.
+type Resumption = fn(&mut CurrentRun) -> Result<(), String>;
 
 /// State of the open lesson, for its panel.
 #[derive(Debug, Clone, Copy)]
@@ -162,15 +158,14 @@ impl Lessons {
                 before.own
             }
             None => {
-                let pace = match run.status() {
-                    RunStatus::Running if run.is_single_generation() => Pace::OneGeneration,
-                    RunStatus::Running => Pace::Running,
-                    RunStatus::Ready | RunStatus::Paused | RunStatus::Finished => Pace::Held,
-                };
+                let is_single = run.is_single_generation();
+                let go_on: Resumption =
+                    if is_single { CurrentRun::single_generation } else { CurrentRun::start };
+                let go_on = (run.status() == RunStatus::Running).then_some(go_on);
                 run.pause()?;
                 run.is_lent = true;
                 let (next, history) = (run.next_plan().clone(), std::mem::take(history));
-                Own { next, history, pace }
+                Own { next, history, go_on }
             }
         };
         run.set_next_plan(own.next.clone())?;
@@ -215,11 +210,7 @@ impl Lessons {
         run.set_next_plan(own.next)?;
         run.is_lent = false;
         history.give_back(own.history);
-        match own.pace {
-            Pace::Running if run.status() == RunStatus::Paused => run.start(),
-            Pace::OneGeneration if run.status() == RunStatus::Paused => run.single_generation(),
-            _ => Ok(()),
-        }
+        own.go_on.filter(|_| run.status() == RunStatus::Paused).map_or(Ok(()), |go_on| go_on(run))
     }
 
     /// Selects a scene and shows its snakes. Its runs start after the reader has guessed.
@@ -228,7 +219,7 @@ impl Lessons {
         let Some(scene) = LESSONS[current.index].scenes.get(number) else { return Ok(None) };
         (current.scene, current.under_way) = (number, None);
         let progress = &mut current.progress[number];
-        match scene.shows {
+        match &scene.shows {
             Shows::Champion(champion) => {
                 let champions = champions(champion, scene.sides)?;
                 progress.trial = champions.first().map(|staged| staged.trial().clone());
@@ -241,10 +232,10 @@ impl Lessons {
                 Ok(Some(Show::race(champions)))
             }
             // Runs that are finished are not repeated.
-            Shows::RunsOf(_) if progress.is_revealed => Ok(progress.race()),
-            Shows::RunsOf(_) if !progress.has_begun => Ok(None),
-            Shows::RunsOf(preset) => {
-                let plans = scene.sides.iter().map(|side| plan(preset, side));
+            Shows::Runs(_) if progress.is_revealed => Ok(progress.race()),
+            Shows::Runs(_) if !progress.has_begun => Ok(None),
+            Shows::Runs(common) => {
+                let plans = scene.sides.iter().map(|side| plan(common, side));
                 let plans = plans.collect::<Result<Vec<_>, _>>()?;
                 progress.runs = scene.sides.iter().map(|side| Found::of(side.name)).collect();
                 let started = ParallelRuns::start(plans);
@@ -345,8 +336,7 @@ fn take_in(
     if lessons.current.is_none() {
         return;
     }
-    let mut lanes: Vec<&Lane> = lanes.iter().collect();
-    lanes.sort_by_key(|lane| lane.number);
+    let lanes: Vec<&Lane> = lanes.iter().sort_by_key::<&Lane, _>(|lane| lane.number).collect();
     lessons.follow_playback(&playback, &lanes);
     let is_seen = |lane: &Lane| lane.replay.is_over() && !lane.replay.is_disturbed();
     let names = lanes.iter().map(|lane| is_seen(lane).then(|| lane.staged.label()));

@@ -13,7 +13,6 @@ use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 
-use super::current_run::CurrentRun;
 use super::undo::{UndoHistory, UndoStep};
 use crate::studio::commands::files::FileQuestion;
 use crate::studio::stage::Show;
@@ -29,7 +28,7 @@ pub(crate) use item::LibraryItem;
 pub(crate) use load::founder_of;
 
 /// Entries of the saves folder, and the operations that are in progress or can be undone.
-#[derive(Resource, Debug)]
+#[derive(Resource, Debug, Default)]
 pub(crate) struct Library {
     /// Saves folder, in which files can be stored.
     pub saves: SavesFolder,
@@ -69,36 +68,10 @@ pub(crate) struct Library {
     pub export_requests: u64,
 }
 
-impl FromWorld for Library {
-    fn from_world(world: &mut World) -> Self {
-        Self::new(world.resource::<CurrentRun>().context.saves.clone())
-    }
-}
-
 impl Library {
     /// Creates the library of a folder, without reading it.
     pub fn new(saves: SavesFolder) -> Self {
-        Self {
-            saves,
-            reader: None,
-            items: Vec::new(),
-            is_listed: false,
-            unread: 0,
-            problem: None,
-            revision: 0,
-            listings: 0,
-            sortings: 0,
-            has_new_names: false,
-            batches: Vec::new(),
-            examination: None,
-            loading: None,
-            loaded: None,
-            newest: (0, None),
-            current: None,
-            is_drop_near: false,
-            unanswered: (0, None),
-            export_requests: 0,
-        }
+        Self { saves, ..Self::default() }
     }
 
     /// Returns whether the library has been opened, so that it is kept up to date.
@@ -123,11 +96,6 @@ impl Library {
     /// Returns the displayed name of an entry.
     pub fn name_of(&self, place: &SavePlace) -> String {
         self.item(place).map_or_else(|| place.shown_name(), |item| item.name().to_owned())
-    }
-
-    /// Returns the user's own name for a run, if any.
-    fn own_name(&self, place: &SavePlace) -> Option<String> {
-        self.item(place)?.own_name().map(str::to_owned)
     }
 
     /// Returns whether the place is the folder of the run in progress.

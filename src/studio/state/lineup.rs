@@ -28,18 +28,15 @@ pub(crate) fn champion_of(
     run: &CurrentRun,
     opening: &OpeningChampions,
 ) -> Option<StagedChampion> {
-    let number = run.number();
-    let found = |champion: &Champion| StagedChampion::from_run(champion, number);
-    match *pick {
-        Pick::Opened(index) => opening.staged(index),
-        Pick::Generation(generation) => run.champion_of(generation).map(found),
-        Pick::Front { generation, individual } => {
-            run.front_member(generation, individual).as_ref().map(found)
-        }
-        Pick::Elite(cell) => run.elite(cell).as_ref().map(found),
-        Pick::Stairs(node) => run.stairs_agent(node).as_ref().map(found),
-        Pick::Individual(place) => run.individual(place).as_ref().map(found),
-    }
+    let found = match *pick {
+        Pick::Opened(index) => return opening.staged(index),
+        Pick::Generation(generation) => run.champion_of(generation).cloned(),
+        Pick::Front(place) => run.front_member(place),
+        Pick::Elite(cell) => run.elite(cell),
+        Pick::Stairs(node) => run.stairs_agent(node),
+        Pick::Individual(place) => run.individual(place),
+    };
+    found.map(|champion| StagedChampion::from_run(&champion, run.number()))
 }
 
 /// Returns whether two lanes show the same individual.
@@ -66,8 +63,35 @@ pub(crate) fn with_one_more(
     Ok(Some(Show::race(on_show)))
 }
 
-/// Returns the champions of the current run's generations. If there are many, returns some at equal distances,
-/// including the first and the last.
+/// Returns the indices of the generations to race, given the fitness of the champion of each. Of many generations, those race that show how
+/// the run learned: they have records. Of many records, those race that first reach evenly spaced results from the first to the best.
+pub(crate) fn learning(fitness: &[f32]) -> Vec<usize> {
+    let all = || evenly(fitness.len(), MAX_LANES, CHOSEN_GENERATIONS).collect();
+    if fitness.len() <= MAX_LANES {
+        return all();
+    }
+    let mut best = f32::NEG_INFINITY;
+    let is_record = |(index, fitness): (usize, &f32)| {
+        let is_better = *fitness > best;
+        best = best.max(*fitness);
+        is_better.then_some(index)
+    };
+    let mut records: Vec<usize> = fitness.iter().enumerate().filter_map(is_record).collect();
+    if let [first, .., last] = records[..]
+        && records.len() > MAX_LANES
+    {
+        let (least, gain) = (fitness[first], fitness[last] - fitness[first]);
+        let result = |race: usize| least + gain * race as f32 / (CHOSEN_GENERATIONS - 1) as f32;
+        let reaches = |race: usize| records.iter().copied().find(|at| fitness[*at] >= result(race));
+        let mut chosen: Vec<usize> =
+            (0..CHOSEN_GENERATIONS).map(|race| reaches(race).unwrap_or(last)).collect();
+        chosen.dedup();
+        records = chosen;
+    }
+    if records.len() > 1 { records } else { all() }
+}
+
+/// Returns the champions of the current run's generations; of many, those that show how the run learned.
 pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, String> {
     let champions: Vec<&Champion> =
         run.reports().iter().filter_map(|report| report.champion.as_ref()).collect();
@@ -75,8 +99,9 @@ pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, S
         return Err("Nothing to race yet: finish two generations first.".to_owned());
     }
     let number = run.number();
-    let chosen = evenly(champions.len(), MAX_LANES, CHOSEN_GENERATIONS);
-    Ok(chosen.map(|index| StagedChampion::from_run(champions[index], number)).collect())
+    let fitness: Vec<f32> = champions.iter().map(|champion| champion.evaluation.fitness).collect();
+    let staged = |index| StagedChampion::from_run(champions[index], number);
+    Ok(learning(&fitness).into_iter().map(staged).collect())
 }
 
 /// Returns the best snakes of a generation, or of the latest one.
@@ -101,11 +126,17 @@ mod tests {
     use crate::studio::state::current_run::{climber, explored_run, prepared_run};
 
     #[test]
-    fn of_many_generations_some_race_at_equal_distances() {
-        let chosen = |count| evenly(count, 10, 6).collect::<Vec<_>>();
-        assert_eq!(chosen(6), [0, 1, 2, 3, 4, 5]);
-        assert_eq!(chosen(10).len(), 10);
-        assert_eq!(chosen(101), [0, 20, 40, 60, 80, 100]);
+    fn of_many_generations_those_race_that_learned() {
+        assert_eq!(learning(&[1.0; 6]), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(learning(&[1.0; 101]), [0, 20, 40, 60, 80, 100], "it learns nothing");
+        // It learns in the first 20 of 200 generations.
+        let fitness: Vec<f32> = (0..200_u8).map(|at| f32::from(at.min(20))).collect();
+        assert_eq!(learning(&fitness), [0, 4, 8, 12, 16, 20]);
+        let mut fitness = [1.0; 200];
+        fitness[7] = 9.0;
+        fitness[90..].fill(8.0);
+        fitness[150] = 20.0;
+        assert_eq!(learning(&fitness), [0, 7, 150]);
     }
 
     #[test]
@@ -130,7 +161,7 @@ mod tests {
         let leaders = leaders(&run, None).expect("some are healthy");
         assert_eq!(leaders[0].name(), "No. 1");
         assert!(leaders.len() > 2 && leaders.len() <= MAX_LANES);
-        let fitness: Vec<f32> = leaders.iter().map(StagedChampion::fitness).collect();
+        let fitness: Vec<f32> = leaders.iter().map(|of| of.champion().evaluation.fitness).collect();
         assert!(fitness.is_sorted_by(|a, b| a >= b), "{fitness:?}");
         assert!(crate::studio::state::lineup::leaders(&prepared_run(), None).is_err());
     }

@@ -12,7 +12,7 @@ use snakes_lab::run::LocalPool;
 use snakes_lab::run::{Evaluator, RunSource};
 
 /// Options with which the studio is opened.
-#[derive(Debug, Clone)]
+#[derive(Resource, Debug, Clone)]
 pub struct Options {
     /// Run with which the studio opens.
     pub run: RunSource,
@@ -66,7 +66,3 @@ impl Options {
         }
     }
 }
-
-/// Study with which the studio was opened, if any.
-#[derive(Resource, Debug, Clone, Default)]
-pub(crate) struct OpenedComparison(pub Option<StudyRuns>);

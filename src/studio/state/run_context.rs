@@ -16,10 +16,6 @@ pub(crate) struct RunContext {
     pub saves: SavesFolder,
     /// Run with which the studio opens.
     pub first: RunSource,
-    /// Whether to open the latest run, stopped or finished, or to offer it.
-    pub offers_stopped_run: bool,
-    /// Whether the user named the preset, even if it is the default one.
-    pub names_preset: bool,
     /// Presets that the user can choose.
     pub presets: Arc<KnownFiles<Preset>>,
     /// Stairs that the user can choose.
@@ -34,8 +30,6 @@ impl RunContext {
             evaluator: Arc::clone(&options.evaluator),
             saves: options.saves.clone(),
             first: options.run.clone(),
-            offers_stopped_run: options.offers_stopped_run,
-            names_preset: options.names_preset,
             presets: Arc::new(KnownFiles::read(&options.saves)),
             stairs: Arc::new(KnownFiles::read(&options.saves)),
             run_folder: RunInProgress::default(),

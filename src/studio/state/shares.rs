@@ -5,6 +5,7 @@
 
 mod writer;
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,6 +16,7 @@ use bevy::prelude::*;
 use super::new_file::offer_path;
 use crate::studio::commands::camera_mode::CameraMode;
 use crate::studio::commands::overlay::Overlay;
+use crate::studio::commands::{FilmSize, SMALL_GIF_MB};
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::decimals::in_percent;
@@ -32,6 +34,11 @@ use writer::{Leash, written};
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Shares {
     under_way: Option<ShareUnderWay>,
+    /// Champions for which the user was asked where to save their file, by the number of the question. The stage may show others by the time
+    /// of the answer.
+    asked: BTreeMap<u32, (Vec<StagedChampion>, StageLook, FilmSize)>,
+    /// Number of questions so far.
+    questions: u32,
 }
 
 /// A file that is being written. Dropping the value cancels the file.
@@ -42,19 +49,19 @@ struct ShareUnderWay {
     work: BackgroundTask<Result<PathBuf, String>>,
 }
 
-/// Look of an exported film, which is that of the stage.
+/// Look of the stage, of a picture or of a film.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ShareLook {
-    /// Camera mode of the stage.
+pub struct StageLook {
+    /// Camera mode: follow, side or top; on the stage also free.
     pub camera: CameraMode,
-    /// Theme of the studio.
+    /// Theme of the scene.
     pub theme: Theme,
-    /// Overlays that are visible on the stage.
+    /// Overlays that are drawn over the scene.
     pub overlays: Vec<Overlay>,
 }
 
 /// Progress of the file that is being written.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct ShareProgress {
     /// Name of the file.
     pub name: String,
@@ -86,6 +93,8 @@ impl ShareProgress {
     }
 }
 
+/// Maximum number of questions whose champions are kept: that of an open dialog, and later ones in the library.
+const MOST_ASKED: usize = 4;
 /// Subject of messages about shared files, which replace each other.
 const SUBJECT: &str = "share";
 /// Number of parts in which progress is counted.
@@ -98,6 +107,33 @@ impl Drop for ShareUnderWay {
 }
 
 impl Shares {
+    /// Keeps champions until the user has chosen where to save their file. Returns the number of the question. The last [`MOST_ASKED`] are
+    /// kept, because a dialog that was closed sends no answer.
+    pub fn ask(&mut self, champions: Vec<StagedChampion>, look: StageLook, size: FilmSize) -> u32 {
+        self.questions += 1;
+        self.asked.insert(self.questions, (champions, look, size));
+        if self.asked.len() > MOST_ASKED {
+            self.asked.pop_first();
+        }
+        self.questions
+    }
+
+    /// Begins to write the champions of a question.
+    ///
+    /// # Errors
+    /// See [`Self::begin`]; or the champions are not kept any more.
+    pub fn begin_asked(
+        &mut self,
+        format: ExportFormat,
+        path: &Path,
+        question: u32,
+    ) -> Result<(), String> {
+        let asked = self.asked.remove(&question);
+        let (champions, look, size) =
+            asked.ok_or("Its snake is not kept any more; share it again.")?;
+        self.begin(format, path, &champions, (&look, size))
+    }
+
     /// Begins to write champions to a file.
     ///
     /// # Errors
@@ -107,11 +143,9 @@ impl Shares {
         format: ExportFormat,
         path: &Path,
         champions: &[StagedChampion],
-        look: &ShareLook,
+        (look, size): (&StageLook, FilmSize),
     ) -> Result<(), String> {
-        if let Some(busy) = self.busy() {
-            return Err(busy);
-        }
+        self.busy().map_or(Ok(()), Err)?;
         refuse_number(format, champions.len())?;
         let shared = champions.iter().map(shared).collect::<Result<Vec<_>, _>>()?;
         let named = with_ending(path, format);
@@ -120,7 +154,8 @@ impl Shares {
             return Err(format!("{} exists already; choose another name.", name_of(&named)));
         }
         let path = named;
-        let (leash, arguments) = (Arc::new(Leash::default()), arguments(format, &path, look));
+        let leash = Arc::new(Leash::default());
+        let arguments = arguments(format, &path, (look, size));
         let held = Arc::clone(&leash);
         let failed = |error| format!("{} could not be written: {error}.", path.display());
         let work = BackgroundTask::start_counted(PARTS, move |control| {
@@ -211,7 +246,11 @@ fn with_ending(path: &Path, format: ExportFormat) -> PathBuf {
 }
 
 /// Returns the arguments of the program that writes the file, apart from the champions.
-fn arguments(format: ExportFormat, path: &Path, look: &ShareLook) -> Vec<OsString> {
+fn arguments(
+    format: ExportFormat,
+    path: &Path,
+    (look, size): (&StageLook, FilmSize),
+) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = vec!["--output".into(), path.into()];
     if format.is_film() {
         // A free camera would not follow the snake.
@@ -224,6 +263,10 @@ fn arguments(format: ExportFormat, path: &Path, look: &ShareLook) -> Vec<OsStrin
         let overlays: Vec<&str> = look.overlays.iter().filter_map(|of| of.short_name()).collect();
         if !overlays.is_empty() {
             arguments.extend(["--show".into(), overlays.join(",").into()]);
+        }
+        if size == FilmSize::Small {
+            arguments.extend(["--speed", "2", "--most-mb"].map(OsString::from));
+            arguments.push(SMALL_GIF_MB.to_string().into());
         }
     }
     arguments

@@ -76,9 +76,7 @@ impl StairsExams {
         if self.under_way.is_some() {
             return Err("An exam is in progress: wait for it, or cancel it.".to_owned());
         }
-        if let Some(reason) = no_exam_because(staged) {
-            return Err(reason);
-        }
+        no_exam_because(staged).map_or(Ok(()), Err)?;
         let champion = staged.champion().clone();
         if self.of(&champion).is_some() {
             return Ok(());
@@ -167,12 +165,11 @@ pub(crate) fn result_in_words(grids: &[StairsGrid]) -> String {
 
 /// Describes in a few words how a trial of the exam ended.
 pub(crate) fn end_in_words(end: &ExamEnd) -> String {
-    match (end.landed_s, end.steps) {
-        _ if end.is_disqualified => "is disqualified".to_owned(),
-        (Some(landed_s), _) if end.has_landed => format!("reaches the top after {landed_s:.1} s"),
-        (Some(landed_s), _) => format!("reaches the top after {landed_s:.1} s, but does not stay"),
-        (None, 0) => "climbs no step".to_owned(),
-        (None, steps) => format!("ends on step {steps}"),
+    match end.landed_s {
+        _ if end.is_disqualified => end.ending.words(),
+        Some(landed_s) if end.has_landed => format!("reaches the top after {landed_s:.1} s"),
+        Some(landed_s) => format!("reaches the top after {landed_s:.1} s, but does not stay"),
+        None => end.ending.words(),
     }
 }
 

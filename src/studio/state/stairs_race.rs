@@ -17,7 +17,8 @@ pub(crate) fn stairs_race(champion: &StagedChampion) -> Result<Show, String> {
         champion.in_world(&trial, other.name.replace('-', " "))
     });
     // The champion's own stairs may be among the built-in ones, and are not repeated.
-    let others = others.filter(|staged| staged.is_changed() && staged.check().is_ok());
+    let is_other = |staged: &StagedChampion| staged.trial() != champion.trial();
+    let others = others.filter(|staged| is_other(staged) && staged.check().is_ok());
     race_of(std::iter::once(own).chain(others), "The snake on the stage fits no other stairs.")
 }
 
@@ -42,5 +43,7 @@ mod tests {
         // A race that is started from one of the lanes has the same stairs.
         let again = stairs_race(&show.champions[1]).expect("it fits");
         assert!(again.champions.len() >= MAX_LANES - 1);
+        let own = again.champions[0].trial();
+        assert!(again.champions[1..].iter().all(|of| of.trial() != own), "its own only once");
     }
 }

@@ -10,7 +10,7 @@ use bevy::prelude::*;
 
 use super::current_run::{CurrentRun, RunStatus};
 use super::following::Following;
-use crate::studio::commands::turn::Turn;
+use crate::studio::commands::Turn;
 use crate::studio::schedule::FrameSet;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::Playback;
@@ -95,9 +95,8 @@ impl Turns {
         &self,
         run: &CurrentRun,
         following: &Following,
-        stage: (&StageMode, Option<&StagedChampion>),
+        (mode, on_stage): (&StageMode, Option<&StagedChampion>),
     ) -> bool {
-        let (mode, on_stage) = stage;
         let is_live = following.follows_evolution() && run.status() == RunStatus::Running;
         let is_opened = on_stage.is_some_and(|of| matches!(of.source(), ChampionSource::Opened(_)));
         let stays = matches!(mode, StageMode::Race | StageMode::WhatIf { .. })
@@ -163,7 +162,7 @@ mod tests {
     fn the_champions_of_all_generations_come_in_turn_without_end() {
         let steps = [Turn::Next, Turn::Next, Turn::Next, Turn::Previous, Turn::First];
         let shown = shown(&explored_run(), &steps);
-        let seen: Vec<u32> = shown.iter().map(StagedChampion::generation).collect();
+        let seen: Vec<u32> = shown.iter().map(|of| of.champion().origin.generation).collect();
         assert_eq!(seen, [1, 2, 1, 2, 1]);
     }
 

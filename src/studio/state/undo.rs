@@ -286,34 +286,9 @@ mod tests {
         history
     }
 
-    /// Returns the plans before and after a step.
-    fn plans(step: Option<UndoStep>) -> (RunPlan, RunPlan) {
-        let Some(UndoStep::Plan(PlanStep { before, after, .. })) = step else { panic!("a step") };
-        (*before, *after)
-    }
-
     #[test]
-    fn steps_are_undone_and_redone_with_their_labels() {
-        let mut history = changed();
-        history.is_settled = true;
-        history.note(&set("0.2"), plan("0.5"), &plan("0.2"));
-        assert_eq!(history.next(UndoDirection::Back), Some("friction 0.2"));
-        assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("0.5"), plan("0.2")));
-        assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("1"), plan("0.5")));
-        assert_eq!(step(&mut history, UndoDirection::Back), None);
-        assert_eq!(plans(step(&mut history, UndoDirection::Forth)), (plan("1"), plan("0.5")));
-        assert_eq!(history.next(UndoDirection::Forth), Some("friction 0.2"));
-    }
-
-    #[test]
-    fn one_drag_is_one_step_even_if_it_rests() {
+    fn a_drag_that_ends_at_its_initial_value_is_no_step() {
         let mut history = UndoHistory::default();
-        for (before, after) in [("1", "0.8"), ("0.8", "0.5"), ("0.5", "0.3")] {
-            history.note(&set(after), plan(before), &plan(after));
-        }
-        assert_eq!(plans(step(&mut history, UndoDirection::Back)), (plan("1"), plan("0.3")));
-        assert_eq!(step(&mut history, UndoDirection::Back), None);
-        // A drag that ends at its initial value adds no step.
         history.note(&set("0.8"), plan("1"), &plan("0.8"));
         history.note(&set("1"), plan("0.8"), &plan("1"));
         assert_eq!(history.next(UndoDirection::Back), None);

@@ -113,8 +113,7 @@ pub(crate) fn what_if(
         // Other differences between the next run's world and the stage are ignored.
         WorldChange::Fields(changes) => {
             let settings = Settings { trial: so_far.trial().clone(), ..next.clone() };
-            let changed = with_fields(&settings, changes.iter().copied());
-            changed.map_err(|error| error.to_string())?.trial
+            with_fields(&settings, changes.iter().copied())?.trial
         }
         // Duration, fitness and engine are kept, so that the lanes remain comparable.
         WorldChange::Preset(_) => Trial {

@@ -28,18 +28,14 @@ impl<'a> CommandButton<'a> {
         Self::of(egui::Button::new(label), hint, command)
     }
 
-    /// Creates a low button with this label.
-    pub fn small(
-        label: impl egui::IntoAtoms<'a>,
-        hint: impl Into<Cow<'a, str>>,
-        command: Command,
-    ) -> Self {
-        Self::of(egui::Button::new(label).small(), hint, command)
-    }
-
     /// Makes an existing egui button send a command.
     pub fn of(button: egui::Button<'a>, hint: impl Into<Cow<'a, str>>, command: Command) -> Self {
         Self { button, hint: hint.into(), refusal: None, command }
+    }
+
+    /// Makes the button low.
+    pub fn small(self) -> Self {
+        Self { button: self.button.small(), ..self }
     }
 
     /// Disables the button if `refusal` is a reason. The reason replaces the tooltip unless it is empty.
@@ -53,7 +49,15 @@ impl<'a> CommandButton<'a> {
     }
 
     /// Draws the button, and sends its command when it is clicked. Returns whether it was clicked.
-    pub fn show(self, ui: &mut egui::Ui, commands: &mut Vec<Command>) -> bool {
+    pub fn show(self, ui: &mut egui::Ui) -> bool {
+        let pressed = self.pressed(ui);
+        let is_clicked = pressed.is_some();
+        Command::send_all(pressed, ui);
+        is_clicked
+    }
+
+    /// Draws the button. Returns its command when it is clicked.
+    pub fn pressed(self, ui: &mut egui::Ui) -> Option<Command> {
         let Self { button, hint, refusal, command } = self;
         let mut response = ui.add_enabled(refusal.is_none(), button);
         if !hint.is_empty() {
@@ -62,9 +66,7 @@ impl<'a> CommandButton<'a> {
         if let Some(refusal) = refusal.filter(|refusal| !refusal.is_empty()) {
             response = response.on_disabled_hover_text(refusal);
         }
-        let is_clicked = response.clicked();
-        commands.extend(is_clicked.then_some(command));
-        is_clicked
+        response.clicked().then_some(command)
     }
 }
 
@@ -74,11 +76,10 @@ pub(crate) fn command_box(
     mut is_on: bool,
     (label, hint): (&str, &str),
     command: Command,
-    commands: &mut Vec<Command>,
 ) {
     let response = check_box(ui, &mut is_on, label);
     if hint_of_command(response, hint, &command).clicked() {
-        commands.push(command);
+        command.send(ui);
     }
 }
 

@@ -5,22 +5,24 @@ use bevy_egui::egui::{Color32, Pos2, Rect, Shape, Stroke, WidgetType};
 
 use super::accessible::{named, named_selected};
 use super::theme;
+use snakes_core::schema::named_values;
 
-/// An icon of a button.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Icon {
-    ToStart,
-    StepBack,
-    Play,
-    Pause,
-    StepForward,
-    Loop,
-    /// Reset a setting to the preset's value.
-    Reset,
-    Undo,
-    Redo,
-    /// Show a setting at several values side by side.
-    Sweep,
+named_values! {
+    /// An icon of a button. Its name is its label for screen readers.
+    pub enum Icon {
+        ToStart = "Play from start";
+        StepBack = "Previous step";
+        Play = "Play";
+        Pause = "Pause playback";
+        StepForward = "Next step";
+        Loop = "Loop";
+        /// Reset a setting to the preset's value.
+        Reset = "Reset";
+        Undo = "Undo";
+        Redo = "Redo";
+        /// Show a setting at several values side by side.
+        Sweep = "Sweep";
+    }
 }
 
 /// Side length of an icon button, in points.
@@ -29,22 +31,6 @@ const SIDE: f32 = 28.0;
 const SMALL_SIDE: f32 = 22.0;
 
 impl Icon {
-    /// Returns the icon's label for screen readers.
-    fn label(self) -> &'static str {
-        match self {
-            Self::ToStart => "Play from start",
-            Self::StepBack => "Previous step",
-            Self::Play => "Play",
-            Self::Pause => "Pause playback",
-            Self::StepForward => "Next step",
-            Self::Loop => "Loop",
-            Self::Reset => "Reset",
-            Self::Undo => "Undo",
-            Self::Redo => "Redo",
-            Self::Sweep => "Sweep",
-        }
-    }
-
     /// Returns the shapes of the icon within a square.
     fn shapes(self, square: Rect, stroke: Stroke) -> Vec<Shape> {
         let at = |x: f32, y: f32| square.lerp_inside(egui::vec2(x, y));
@@ -133,7 +119,7 @@ pub(crate) fn icon_button(ui: &mut egui::Ui, icon: Icon, is_on: bool) -> egui::R
     };
     let stroke = Stroke::new(2.0, palette.text);
     let response = square_button(ui, icon, SIDE, (0.42, stroke), fills.map(Some));
-    named_selected(response, WidgetType::Button, is_on, icon.label())
+    named_selected(response, WidgetType::Button, is_on, icon.name())
 }
 
 /// Draws a square button of this side length in points, with an icon whose side is a share of the button's. The fills are the

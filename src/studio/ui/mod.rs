@@ -8,6 +8,7 @@ pub mod icons;
 pub mod lane_dot;
 pub mod notifications;
 pub mod number_field;
+mod outbox;
 pub mod plot_axes;
 pub mod scripts;
 pub mod text_prompt;

@@ -15,7 +15,7 @@ use crate::studio::commands::{Command, RunCommand};
 pub(crate) struct Notices {
     list: Vec<Notice>,
     /// Whether only problems and important news are drawn.
-    is_quiet: bool,
+    pub is_quiet: bool,
 }
 
 #[derive(Debug, Default)]
@@ -49,11 +49,12 @@ impl Notice {
         Self { text, lasts: NEWS, ..Self::default() }
     }
 
-    /// Draws the message's card, at most this wide in points. Returns the card's height and the commands of a clicked button.
-    fn show(&self, ui: &mut egui::Ui, width: f32) -> (f32, Option<Vec<Command>>) {
+    /// Draws the message's card, at most this wide in points. A clicked button sends its commands. Returns the card's height, and whether
+    /// a button was clicked.
+    fn show(&self, ui: &mut egui::Ui, width: f32) -> (f32, bool) {
         let palette = theme::of(ui);
         let edge = if self.is_problem { palette.problem } else { palette.accent };
-        let mut taken = None;
+        let mut is_taken = false;
         let card = palette.card(edge).show(ui, |ui| {
             ui.set_max_width(width);
             let text = egui::RichText::new(&self.text).color(palette.text);
@@ -71,13 +72,14 @@ impl Notice {
                 ui.allocate_ui_with_layout(size, row, |ui| {
                     for (label, commands) in &self.offers {
                         if ui.button(label).clicked() {
-                            taken = Some(commands.clone());
+                            is_taken = true;
+                            Command::send_all(commands.iter().cloned(), ui);
                         }
                     }
                 });
             }
         });
-        (card.response.rect.height(), taken)
+        (card.response.rect.height(), is_taken)
     }
 }
 
@@ -90,11 +92,6 @@ impl Notices {
     /// Shows a message that is also drawn in the presenting mode.
     pub fn important(&mut self, text: String) {
         self.push(Notice { is_important: true, ..Notice::new(text) });
-    }
-
-    /// Selects whether to draw only problems and important news, or all messages.
-    pub fn set_quiet(&mut self, is_quiet: bool) {
-        self.is_quiet = is_quiet;
     }
 
     /// Shows a message that replaces earlier ones on the same subject.
@@ -189,13 +186,9 @@ impl Notices {
         ends.take_while(|end| *end <= height).count().max(1)
     }
 
-    /// Draws the messages in the lower right corner of `room`. Returns the rectangle that they cover, and the commands
-    /// of a clicked button, whose message is removed.
-    fn show(
-        &mut self,
-        context: &egui::Context,
-        room: egui::Rect,
-    ) -> (Option<egui::Rect>, Option<Vec<Command>>) {
+    /// Draws the messages in the lower right corner of `room`. A message whose button is clicked is removed. Returns the
+    /// rectangle that the messages cover.
+    fn show(&mut self, context: &egui::Context, room: egui::Rect) -> Option<egui::Rect> {
         // Older messages that do not fit are hidden until later ones disappear.
         let fitting = self.fitting(room.height());
         // The rest of the room's width is for the card's margins.
@@ -213,24 +206,22 @@ impl Notices {
                     let drawn = self.list.iter_mut().enumerate().rev();
                     let drawn = drawn.filter(|(_, notice)| !is_quiet || notice.is_important);
                     for (index, notice) in drawn.take(fitting) {
-                        let (height, commands) = notice.show(ui, width);
+                        let (height, is_taken) = notice.show(ui, width);
                         if notice.height.to_bits() != height.to_bits() {
                             // egui places the area by its previous size. If the buttons were drawn there, they would
                             // move away from the pointer in the next frame.
                             context.request_discard("a message of another height");
                         }
                         notice.height = height;
-                        taken = taken.take().or(commands.map(|commands| (index, commands)));
+                        taken = taken.or(is_taken.then_some(index));
                     }
                 });
             });
         let is_empty = self.drawn().next().is_none();
-        let covered = (!is_empty).then(|| shown.response.rect.expand(theme::GAP / 2.0));
-        let commands = taken.map(|(index, commands)| {
+        if let Some(index) = taken {
             self.list.remove(index);
-            commands
-        });
-        (covered, commands)
+        }
+        (!is_empty).then(|| shown.response.rect.expand(theme::GAP / 2.0))
     }
 
     fn push(&mut self, new: Notice) {
@@ -260,9 +251,9 @@ fn draw(
     notices.list.retain(|notice| notice.shown_for < notice.lasts);
     // The stairs rise to the upper right, so the largest free area is above the ground at the lower right.
     let room = area.messages_room.shrink(theme::GAP * 1.5);
-    let (covered, taken) = notices.show(contexts.ctx_mut()?, room);
-    area.messages = covered;
-    send.write_batch(taken.unwrap_or_default());
+    let context = contexts.ctx_mut()?;
+    area.messages = notices.show(context, room);
+    send.write_batch(Command::take_sent(context));
     Ok(())
 }
 
@@ -326,7 +317,7 @@ mod tests {
         };
         let room = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(600.0, 500.0));
         offer("Generation 4 is the best so far: 3.34 m, climbs 1 step");
-        let mut harness = Harness::new_ui(|ui| drop(notices.borrow_mut().show(ui.ctx(), room)));
+        let mut harness = Harness::new_ui(|ui| _ = notices.borrow_mut().show(ui.ctx(), room));
         harness.run();
         let below = harness.get_by_label("Show it").rect();
         offer("Generation 5 is the best so far: 3.63 m, lies beside step 1 of the stairs");
@@ -342,7 +333,7 @@ mod tests {
         notices.problem("it failed".to_owned());
         let all = ["small news", "the run is finished", "it failed"];
         for (is_quiet, drawn) in [(false, &all[..]), (true, &all[1..]), (false, &all)] {
-            notices.set_quiet(is_quiet);
+            notices.is_quiet = is_quiet;
             assert!(notices.drawn().map(|notice| &notice.text).eq(drawn), "{is_quiet}");
         }
     }

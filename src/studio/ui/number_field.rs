@@ -14,7 +14,8 @@ use super::theme;
 pub(crate) struct NumberField {
     /// Text of the field while it is edited or invalid; `None` while the field shows the value itself.
     text: Option<String>,
-    problem: Option<String>,
+    /// Error message for the text; `None` if it is valid.
+    pub problem: Option<String>,
 }
 
 impl NumberField {
@@ -44,11 +45,6 @@ impl NumberField {
             return self.text.take().and(parsed);
         }
         None
-    }
-
-    /// Returns the error message for the current text, or `None` if it is valid.
-    pub fn problem(&self) -> Option<&str> {
-        self.problem.as_deref()
     }
 }
 

@@ -59,6 +59,8 @@ impl TextPrompt {
         let response = add(ui, egui::TextEdit::singleline(&mut self.text));
         if let Some(selects_all) = self.pending.take() {
             response.request_focus();
+            // The field opens by an action elsewhere, and its panel may be scrolled away from it.
+            response.scroll_to_me(None);
             let length = self.text.chars().count();
             let from = if selects_all { 0 } else { length };
             select(&response, from, length);

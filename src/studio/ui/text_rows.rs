@@ -2,7 +2,9 @@
 
 use bevy_egui::egui;
 
+use super::buttons::CommandButton;
 use super::theme;
+use crate::studio::commands::Command;
 
 /// Returns text in the style of a section title.
 pub(crate) fn title_text(text: impl Into<String>) -> egui::RichText {
@@ -64,20 +66,21 @@ pub(crate) fn folded(
     header.show_unindented(ui, content).header_response.on_hover_text(hint);
 }
 
-/// Draws the progress of work in the background, beside a button that cancels it. Returns whether the button was clicked.
-pub(crate) fn cancellable_progress(ui: &mut egui::Ui, hint: &str, share: f32, words: &str) -> bool {
+/// Draws the progress of work in the background, beside a button whose command cancels it.
+pub(crate) fn cancellable_progress(
+    ui: &mut egui::Ui,
+    (hint, cancel): (&str, Command),
+    share: f32,
+    words: &str,
+) {
     ui.horizontal(|ui| {
-        let is_cancelled = ui.button("Cancel").on_hover_text(hint).clicked();
+        CommandButton::new("Cancel", hint, cancel).show(ui);
         ui.add(egui::ProgressBar::new(share).text(words).fill(theme::of(ui).accent_soft));
-        is_cancelled
-    })
-    .inner
+    });
 }
 
 /// Draws a clickable row of full width: the name on the left, details on the right.
-pub(crate) fn row(ui: &mut egui::Ui, is_shown: bool, name: &str, about: &str) -> egui::Response {
-    let color = if is_shown { theme::of(ui).text } else { theme::of(ui).text_weak };
-    let about = egui::RichText::new(about).color(color);
-    let button = egui::Button::new(name).right_text(about).selected(is_shown);
+pub(crate) fn row(ui: &mut egui::Ui, name: &str, about: &str) -> egui::Response {
+    let button = egui::Button::new(name).right_text(weak(ui, about)).selected(false);
     ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0)))
 }

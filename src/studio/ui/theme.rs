@@ -11,20 +11,23 @@ use bevy_egui::egui;
 use bevy_egui::egui::Color32;
 
 use snakes_core::check::Invalid;
+use snakes_core::schema::named_values;
 
 use palette::CORNER;
 
 pub use fonts::GlyphWarmUp;
 pub use palette::Palette;
 
-/// The palette that panels and scene use.
-#[derive(Resource, Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Theme {
-    /// Light colours, best for a projector in a lit room.
-    #[default]
-    Light,
-    /// Dark colours.
-    Dark,
+named_values! {
+    /// The palette that panels and scene use. Its name is that in files and flags.
+    #[derive(Resource, Default)]
+    pub enum Theme {
+        /// Light colours, best for a projector in a lit room.
+        #[default]
+        Light = "light";
+        /// Dark colours.
+        Dark = "dark";
+    }
 }
 
 impl Theme {
@@ -33,14 +36,6 @@ impl Theme {
         match self {
             Self::Light => &palette::LIGHT,
             Self::Dark => &palette::DARK,
-        }
-    }
-
-    /// Returns the name of the theme in files and flags.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Light => "light",
-            Self::Dark => "dark",
         }
     }
 
@@ -57,11 +52,8 @@ impl FromStr for Theme {
     type Err = Invalid;
 
     fn from_str(text: &str) -> Result<Self, Invalid> {
-        match text {
-            "light" => Ok(Self::Light),
-            "dark" => Ok(Self::Dark),
-            _ => Err(Invalid::new("theme", format!("{text:?}"), "light or dark")),
-        }
+        let known = Self::ALL.into_iter().find(|theme| theme.name() == text);
+        known.ok_or_else(|| Invalid::new("theme", format!("{text:?}"), "light or dark"))
     }
 }
 
@@ -207,7 +199,7 @@ pub fn apply(context: &egui::Context) {
             widget.corner_radius = CORNER;
         }
     });
-    for theme in [Theme::Light, Theme::Dark] {
+    for theme in Theme::ALL {
         context.style_mut_of(theme.into(), |style| theme.palette().dress(&mut style.visuals));
     }
 }

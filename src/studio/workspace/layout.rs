@@ -77,7 +77,7 @@ impl Layout {
     pub fn state_in(&mut self, size: egui::Vec2, is_settled: bool) -> &mut DockState<PanelKind> {
         if self.is_to_be_laid_out {
             self.state = Self::default_of(is_high(size), size.x);
-            self.widths.clear();
+            self.widths = PanelWidths::default();
             self.is_to_be_laid_out = false;
             self.chosen.clear();
             self.in_front = self.front_panels();
@@ -224,7 +224,7 @@ impl Layout {
             _ => &[PanelKind::Run, PanelKind::World, PanelKind::Lessons],
         };
         let found = |kinds: &[PanelKind]| kinds.iter().find_map(|kind| self.state.find_tab(kind));
-        found(usual).or_else(|| found(&PanelKind::ALL))
+        found(usual).or_else(|| found(PanelKind::IN_MENU))
     }
 
     /// Closes the panel that has the focus.

@@ -12,7 +12,7 @@ use super::commands::WindowCommand;
 use super::commands::modal::Modal;
 use super::commands::panel::PanelKind;
 use super::schedule::FrameSet;
-use super::state::options::OpenedComparison;
+use super::state::options::Options;
 
 use layout::Layout;
 use scale::UiScale;
@@ -90,7 +90,7 @@ impl Workspace {
             WindowCommand::ToggleBlack => self.is_black = !self.is_black,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
             WindowCommand::Enlarge => self.scale.enlarge(),
-            WindowCommand::ResetScale => self.scale.choose(1.0),
+            WindowCommand::ResetScale => self.scale.chosen = 1.0,
             WindowCommand::Fold { section, is_open: true } => {
                 self.unfolded.insert((*section).to_owned());
             }
@@ -103,7 +103,7 @@ impl Workspace {
                 }
             }
             WindowCommand::ToggleModal(modal) => self.toggle_modal(*modal),
-            WindowCommand::CloseModal if self.modal().is_some() => self.close_modal(),
+            WindowCommand::CloseModal if self.modal().is_some() => self.show_modal(None),
             WindowCommand::CloseModal if self.is_presenting => {
                 return self.apply(&WindowCommand::EndPresenting);
             }
@@ -120,37 +120,24 @@ impl Workspace {
 
     /// Opens a modal view in place of any other, or closes the view if it is open already.
     pub fn toggle_modal(&mut self, modal: Modal) {
-        self.leave_tour();
-        self.modal = (self.modal != Some(modal)).then_some(modal);
+        self.show_modal((self.modal != Some(modal)).then_some(modal));
     }
 
-    /// Closes the open modal view.
-    pub fn close_modal(&mut self) {
-        self.leave_tour();
-        self.modal = None;
-    }
-
-    fn leave_tour(&mut self) {
-        if matches!(self.modal, Some(Modal::Tour(_))) {
-            self.awaits_tour = false;
-        }
+    /// Shows this modal view in place of any other. A tour that was open is over.
+    fn show_modal(&mut self, modal: Option<Modal>) {
+        self.awaits_tour &= !matches!(self.modal, Some(Modal::Tour(_)));
+        self.modal = modal;
     }
 }
 
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<Workspace>().add_systems(Update, open_first.in_set(FrameSet::TakeIn));
+    app.init_resource::<Workspace>()
+        .add_systems(Update, open_first.in_set(FrameSet::TakeIn).run_if(run_once));
 }
 
-/// At the first call, opens the charts if the program was started with a comparison, or else the tour if it is not over.
-fn open_first(
-    mut workspace: ResMut<Workspace>,
-    opened: Res<OpenedComparison>,
-    mut is_done: Local<bool>,
-) {
-    if std::mem::replace(&mut *is_done, true) {
-        return;
-    }
-    if opened.0.is_some() {
+/// In the first frame, opens the charts if the program was started with a comparison, or else the tour if it is not over.
+fn open_first(mut workspace: ResMut<Workspace>, options: Res<Options>) {
+    if options.comparison.is_some() {
         workspace.layout.open(PanelKind::Charts);
     } else if workspace.awaits_tour {
         workspace.modal = Some(Modal::Tour(0));
@@ -172,7 +159,7 @@ mod tests {
         workspace.toggle_modal(Modal::Tour(0));
         workspace.toggle_modal(Modal::Tour(1));
         assert_eq!(workspace.modal(), Some(Modal::Tour(1)));
-        workspace.close_modal();
+        workspace.show_modal(None);
         assert!(workspace.modal().is_none() && !workspace.awaits_tour);
     }
 

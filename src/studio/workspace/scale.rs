@@ -18,7 +18,7 @@ const PRESENTED: egui::Vec2 = egui::vec2(1000.0, 625.0);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UiScale {
     /// Factor that the user chose, relative to the usual scale. It applies again when the window becomes large enough.
-    chosen: f32,
+    pub chosen: f32,
     /// Usual scale of a window of this size.
     usual: f32,
     /// Largest scale for which the window has room.
@@ -32,22 +32,12 @@ impl Default for UiScale {
 }
 
 impl UiScale {
-    /// Returns the user's choice, for the preferences.
-    pub fn chosen(self) -> f32 {
-        self.chosen
-    }
-
     /// Returns the scale in use: the allowed one that is nearest to the user's choice, or the largest that fits.
     pub fn shown(self) -> f32 {
         let wanted = self.usual * self.chosen;
         let distance = |scale: &f32| (scale - wanted).abs();
         let nearest = UI_SCALES.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         nearest.unwrap_or(1.0).min(self.largest)
-    }
-
-    /// Stores the user's choice.
-    pub fn choose(&mut self, scale: f32) {
-        self.chosen = scale;
     }
 
     /// Adapts the scale to a window of this size, in logical pixels.
@@ -69,11 +59,6 @@ impl UiScale {
         let share = window / PRESENTED;
         // In steps of 0.05, so that the glyphs are not rasterized anew in every frame while the window is resized.
         ((share.x.min(share.y) * 20.0).floor() / 20.0).max(UI_SCALES[0])
-    }
-
-    /// Returns whether the user chose larger texts than the usual ones.
-    pub fn is_larger(self) -> bool {
-        self.chosen > 1.0
     }
 
     /// Makes the scale a quarter larger, or the usual one if the window has no room for larger texts.
@@ -116,8 +101,7 @@ mod tests {
     use super::*;
 
     fn fitted(width: f32, height: f32, chosen: f32) -> UiScale {
-        let mut scale = UiScale::default();
-        scale.choose(chosen);
+        let mut scale = UiScale { chosen, ..UiScale::default() };
         scale.fit(egui::vec2(width, height));
         scale
     }
@@ -140,7 +124,7 @@ mod tests {
         let mut scale = fitted(1280.0, 720.0, 1.0);
         let mut shown = || {
             scale.enlarge();
-            (scale.shown(), scale.is_larger())
+            (scale.shown(), scale.chosen > 1.0)
         };
         assert_eq!([shown(), shown(), shown()], [(1.25, true), (1.5, true), (1.0, false)]);
     }
@@ -161,7 +145,7 @@ mod tests {
         assert_eq!(scale.shown(), 1.25);
         scale.fit(egui::vec2(1280.0, 720.0));
         assert_eq!(scale.shown(), 0.9, "smaller there, too");
-        assert!((0.75..=2.0).contains(&scale.chosen()));
+        assert!((0.75..=2.0).contains(&scale.chosen));
     }
 
     #[test]
@@ -201,7 +185,7 @@ mod tests {
     #[test]
     fn a_window_that_is_enlarged_has_the_chosen_scale_again() {
         let mut scale = fitted(1024.0, 640.0, 2.0);
-        assert_eq!((scale.shown(), scale.chosen()), (1.25, 2.0));
+        assert_eq!((scale.shown(), scale.chosen), (1.25, 2.0));
         scale.fit(egui::vec2(2560.0, 1440.0));
         assert_eq!(scale.shown(), 2.0);
         // A step starts from the scale in use, not from the user's choice.

@@ -54,11 +54,6 @@ struct Beside {
 }
 
 impl PanelWidths {
-    /// Removes all chosen widths, for a new layout.
-    pub fn clear(&mut self) {
-        *self = Self::default();
-    }
-
     /// Marks the shares as outdated after the program has rearranged the panels. Chosen widths stay.
     pub fn panels_were_rearranged(&mut self) {
         self.shares.clear();
@@ -147,16 +142,10 @@ fn columns(tree: &Tree<PanelKind>, node: NodeIndex) -> usize {
     if node.0 >= tree.len() {
         return 1;
     }
-    let both = || (columns(tree, node.left()), columns(tree, node.right()));
+    let [first, second] = [node.left(), node.right()].map(|part| columns(tree, part));
     match &tree[node] {
-        Node::Horizontal(_) => {
-            let (left, right) = both();
-            left + right
-        }
-        Node::Vertical(_) => {
-            let (above, below) = both();
-            above.max(below)
-        }
+        Node::Horizontal(_) => first + second,
+        Node::Vertical(_) => first.max(second),
         Node::Leaf(_) | Node::Empty => 1,
     }
 }

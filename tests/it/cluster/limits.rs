@@ -80,6 +80,7 @@ fn f3_a_full_store_is_named_by_both_sides_and_the_run_goes_on_once_there_is_room
     worker.wait_for(FULL);
     empty(&server);
     let by_run = finished(under_way);
+    worker.wait_for(": over: work cannot be stored");
     let by_worker = stopped(worker);
     assert_eq!(by_run.lines().filter(|line| line.starts_with(&of_run)).count(), 1, "{by_run}");
     assert!(by_run.contains(&format!("{url}: work cannot be stored: over")), "{by_run}");

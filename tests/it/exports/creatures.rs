@@ -5,17 +5,17 @@ use snakes_core::genome::NodeJoint;
 use snakes_core::save::load_preset;
 use snakes_core::world::JointPlan;
 
-use super::models::{champion_of, compared_in_mujoco, description, export};
+use super::models::{champion_of, compare_in_other_engines, description, export};
 
 /// The creatures have joints about a single axis, for which both engines have the same coordinates.
 #[test]
-fn a_hundred_random_creatures_move_in_mujoco_as_here() {
-    let test = "a_hundred_random_creatures_move_in_mujoco_as_here";
+fn a_hundred_random_creatures_move_in_other_engines_as_here() {
+    let test = "a_hundred_random_creatures_move_in_other_engines_as_here";
     let mut settings = load_preset("creatures").expect("shipped").settings;
     settings.trial.duration_s = 0.1;
     settings.trial.agent.angular_damping_per_s = 0.0;
     (settings.trial.physics.substeps, settings.trial.physics.iterations) = (4, 16);
-    let said = compared_in_mujoco(test, 3, |name, path, rng| {
+    let said = compare_in_other_engines(test, 3, |name, path, rng| {
         let trial = settings.trial.clone();
         let mut genome = settings.genome.random_genome(trial.genome_shape(), rng);
         for node in &mut genome.body.nodes {

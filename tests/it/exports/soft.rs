@@ -7,7 +7,9 @@ use snakes_core::evolve::{Settings, with_fields};
 use snakes_core::score::Trial;
 use snakes_core::world::{SOFTEST_M4_S2, STIFFEST_M4_S2, WorldPlan, modulus_at_pa};
 
-use super::models::{champion, compared_in_mujoco, description, export, log_between, random_trial};
+use super::models::{
+    champion, compare_in_other_engines, description, export, log_between, random_trial,
+};
 
 /// Returns the trial with soft limbs, each with a random modulus from the softest allowed to rigid.
 fn softened(trial: &Trial, rng: &mut ChaCha8Rng) -> Trial {
@@ -74,9 +76,9 @@ fn soft_description(plan: &WorldPlan, rng: &mut ChaCha8Rng) -> Value {
 }
 
 #[test]
-fn a_hundred_random_soft_bodies_move_in_mujoco_as_here() {
-    let test = "a_hundred_random_soft_bodies_move_in_mujoco_as_here";
-    let said = compared_in_mujoco(test, 2, |name, path, rng| {
+fn a_hundred_random_soft_bodies_move_in_other_engines_as_here() {
+    let test = "a_hundred_random_soft_bodies_move_in_other_engines_as_here";
+    let said = compare_in_other_engines(test, 2, |name, path, rng| {
         let rigid = random_trial(rng);
         let champion = champion(softened(&rigid, rng), rng);
         export(name, &champion, &path(".xml"));

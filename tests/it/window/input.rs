@@ -58,7 +58,7 @@ impl Studio {
         self.move_to(at);
         self.xdotool(&["click", "1"]);
         // The two clicks are in separate frames, but close in time.
-        std::thread::sleep(Duration::from_millis(250));
+        std::thread::sleep(Duration::from_millis(150));
         self.for_frames(|| self.xdotool(&["click", "1"]));
     }
 

@@ -67,7 +67,7 @@ fn search_settings_can_change_during_a_run() {
         return;
     };
     studio.wait_for_title("running");
-    studio.fold("How it learns");
+    studio.fold("Method of evolution");
     studio.type_into("Generations", "2000");
     studio.wait_for_title("of 2000 generations, running");
     studio.place("1 setting changed during the run");

@@ -114,14 +114,19 @@ fn library(studio: &Studio) {
         has(" saves") && !has("not read yet")
     };
     studio.wait(is_read, || "a library that is read".to_owned());
-    studio.click_at(studio.button_starting("robust, ").area.middle());
+    studio.click_at(
+        studio
+            .place_where("the climber", |place| place.label.starts_with("climber, "))
+            .area
+            .middle(),
+    );
     studio.place("Replay");
 }
 
 fn creature(studio: &Studio) {
     studio.click_at(
         studio
-            .scrolled_to_where("the creature", |place| place.label.starts_with("crawler, "))
+            .place_where("the creature", |place| place.label.starts_with("crawler, "))
             .area
             .middle(),
     );

@@ -152,7 +152,12 @@ impl Album {
             has(" saves") && !has("not read yet")
         };
         studio.wait(is_read, || "a library that is read".to_owned());
-        studio.click_at(studio.button_starting("robust, ").area.middle());
+        studio.click_at(
+            studio
+                .place_where("the climber", |place| place.label.starts_with("climber, "))
+                .area
+                .middle(),
+        );
         studio.place("Replay");
         self.keep(&studio, "library");
 

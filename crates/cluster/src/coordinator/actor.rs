@@ -74,6 +74,8 @@ pub struct Actor {
     heard: Instant,
     /// Whether the user was told that something is larger than the server's messages.
     has_said_too_large: bool,
+    /// Reason for which the run waits, as its last notice said it.
+    told_trouble: Option<String>,
     tasks: Vec<JoinHandle<()>>,
     /// Tasks that publish batches.
     publishing: JoinSet<()>,
@@ -144,6 +146,7 @@ impl Actor {
             news,
             heard,
             has_said_too_large: false,
+            told_trouble: None,
             tasks,
             publishing: JoinSet::new(),
         })
@@ -327,7 +330,16 @@ impl Actor {
         self.act(actions);
     }
 
-    async fn tell(&self) {
+    /// Sends a notice at once if the reason for which the run waits has changed since the last notice: a run may end before the
+    /// next notice is due.
+    async fn tell_of_trouble(&mut self) {
+        if self.told_trouble != self.broker.connection().trouble() {
+            self.tell().await;
+        }
+    }
+
+    async fn tell(&mut self) {
+        self.told_trouble = self.broker.connection().trouble();
         let notice = RunNotice {
             format: WIRE_FORMAT,
             run: self.options.run.clone(),
@@ -338,7 +350,7 @@ impl Actor {
             pending: self.ledger.pending() as u64,
             results: self.ledger.results(),
             set_aside: self.ledger.staff().set_aside_names(),
-            trouble: self.broker.connection().trouble(),
+            trouble: self.told_trouble.clone(),
         };
         let _ = self.broker.client().publish(RUN_NOTICES, line_of(&notice).into()).await;
     }
@@ -363,7 +375,10 @@ pub fn run_actor(
                     }
                 }
                 news = actor.news.recv() => if let Some(news) = news { actor.on_news(news) },
-                _ = ticks.tick() => actor.on_tick(),
+                _ = ticks.tick() => {
+                    actor.on_tick();
+                    actor.tell_of_trouble().await;
+                }
                 _ = notices.tick() => actor.tell().await,
                 refusal = broker.connection().refusal() => {
                     let refusal = broker.refused("the run", refusal).to_string();
@@ -375,7 +390,11 @@ pub fn run_actor(
         actor.tasks.iter().for_each(JoinHandle::abort);
         let is_refused = actor.common.status().refusal.is_some();
         if !is_refused && !actor.broker.connection().is_lost() {
-            let _ = tokio::time::timeout(SILENCE, clean_up(&actor)).await;
+            let end = async {
+                actor.tell_of_trouble().await;
+                clean_up(&actor).await;
+            };
+            let _ = tokio::time::timeout(SILENCE, end).await;
         }
     });
 }

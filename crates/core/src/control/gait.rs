@@ -1,34 +1,45 @@
 //! Periodic joint angles, followed by a servo.
 
 use super::servo::JointServos;
-use super::{Controller, Observation, Senses};
-use crate::genome::controllers::{Gait, Waves};
+use super::{Controller, Observation, Perception, Senses};
+use crate::genome::controllers::{Gait, Steering, Waves};
 use crate::world::JointTorque;
 
 /// Turns every joint towards the target angle of a gait.
 #[derive(Debug, Clone)]
 pub struct GaitFollower {
     waves: Waves,
+    steering: Steering,
     servo: JointServos,
 }
 
 impl GaitFollower {
     /// Creates the follower of a gait before the first step.
     pub fn new(gait: Gait) -> Self {
-        let Gait { stiffness_nm_per_rad, servo_damping_nms_per_rad, waves } = gait;
-        Self { waves, servo: JointServos::new(stiffness_nm_per_rad, servo_damping_nms_per_rad) }
+        let Gait { stiffness_nm_per_rad, servo_damping_nms_per_rad, waves, steering } = gait;
+        let servo = JointServos::new(stiffness_nm_per_rad, servo_damping_nms_per_rad);
+        Self { waves, steering, servo }
     }
 }
 
 impl Controller for GaitFollower {
     fn needs(&self) -> Senses {
-        Senses::JOINTS
+        if self.steering.is_used() { Senses::ALL } else { Senses::JOINTS }
     }
 
     fn act(&mut self, observation: &Observation, torques: &mut [JointTorque]) {
         let periods = observation.periods(self.waves.frequency_hz);
-        let targets =
-            self.waves.joints.iter().map(|joint| [joint.bend.at(periods), joint.twist.at(periods)]);
+        let waves = self.waves.joints.iter();
+        let targets = waves.map(|joint| [joint.bend.at(periods), joint.twist.at(periods)]);
+        if !self.steering.is_used() {
+            return self.servo.pull(observation, targets, torques);
+        }
+        let Steering { yaw_rad, aside_rad, roll_rad } = self.steering;
+        let Perception { snake, limbs, .. } = &observation.perception;
+        let by_heading = yaw_rad * snake.yaw + aside_rad * snake.aside;
+        let targets = targets
+            .zip(limbs.iter().skip(1))
+            .map(|([bend, twist], rear)| [bend, twist + by_heading + roll_rad * rear.roll]);
         self.servo.pull(observation, targets, torques);
     }
 }
@@ -36,11 +47,15 @@ impl Controller for GaitFollower {
 #[cfg(test)]
 mod tests {
     use crate::control::{ActiveSenses, ControlLoop};
-    use crate::genome::controllers::{Gait, JointWaves, Wave, Waves};
+    use crate::evolve::Champion;
+    use crate::genome::controllers::{Gait, JointWaves, Steering, Wave, Waves};
     use crate::genome::{ControllerGenes, GenomeSpace};
     use crate::rng::{Purpose, stream};
-    use crate::score::Trial;
-    use crate::world::{JointTorque, PhysicsSettings, Simulation, TESTED_RATES, Vector};
+    use crate::save::shipped_champion;
+    use crate::score::{Perturbation, Rollout, Trial};
+    use crate::world::{
+        JointTorque, PhysicsEngine, PhysicsSettings, Simulation, TESTED_RATES, Vector,
+    };
 
     /// Returns the angles after each step of two floating limbs whose joint is twisted at 2 rad/s and turned back by a servo.
     fn swing_rad(
@@ -64,13 +79,13 @@ mod tests {
             stiffness_nm_per_rad: stiffness,
             servo_damping_nms_per_rad: servo_damping,
             waves: Waves { frequency_hz: 1.0, joints },
+            steering: Steering::default(),
         });
         let mut world = Simulation::new(&trial.world_plan(&genome));
-        for (index, (_, limb)) in world.physics_mut().bodies.iter_mut().enumerate() {
-            let above = limb.translation() + Vector::new(0.0, 0.0, 30.0);
-            limb.set_translation(above, true);
-            limb.set_angvel(Vector::new(0.0, if index == 0 { 1.0 } else { -1.0 }, 0.0), true);
-        }
+        world.change_parts(|(index, part)| {
+            part.at.z += 30.0;
+            part.angular = Vector::new(0.0, if index == 0 { 1.0 } else { -1.0 }, 0.0);
+        });
         let mut control =
             ControlLoop::new(&genome, &trial.world_plan(&genome), ActiveSenses::default());
         let mut torques = [JointTorque::default()];
@@ -80,6 +95,40 @@ mod tests {
             world.joint_states().next().expect("a joint").twist_rad
         };
         (0..2 * physics.steps_per_s).map(step).collect()
+    }
+
+    /// Returns where the shipped climber's middle limb is, in metres, after two seconds with this steering in a trial that begins turned by
+    /// `turn_rad`.
+    fn with_steering(steering: Steering, turn_rad: f32) -> Vector {
+        let Champion { mut genome, mut trial, .. } = shipped_champion().expect("shipped").champion;
+        // Before the stairs, whose edges make a motion sensitive.
+        trial.duration_s = 2.0;
+        trial.physics.engine = PhysicsEngine::Lanes;
+        let ControllerGenes::Gait(gait) = &mut genome.controller else { panic!("a gait") };
+        gait.steering = steering;
+        let turned = Perturbation { turn_rad, ..Perturbation::default() };
+        let mut rollout = Rollout::perturbed(&genome, &trial, &turned);
+        while rollout.advance() {}
+        rollout.middle_m()
+    }
+
+    #[test]
+    fn steering_leaves_a_symmetric_trial_as_it_is_and_moves_mirrored_starts_to_mirrored_sides() {
+        let none = Steering::default();
+        for steering in [
+            Steering { yaw_rad: 0.5, ..none },
+            Steering { aside_rad: 2.0, ..none },
+            Steering { yaw_rad: -0.2, aside_rad: 0.1, roll_rad: 0.4 },
+        ] {
+            let moved_m = with_steering(steering, 0.0).distance(with_steering(none, 0.0));
+            assert!(moved_m < 0.01, "{steering:?}: {moved_m} m");
+            let [left, right] = [-0.1, 0.1].map(|turn_rad| with_steering(steering, turn_rad));
+            let unsteered = with_steering(none, -0.1);
+            assert!(left.distance(unsteered) > 0.15, "{steering:?}: {left}, {unsteered}");
+            // The engine solves contacts one after the other, so a mirrored motion is not exactly the mirror image.
+            let mirrored = Vector::new(-right.x, right.y, right.z);
+            assert!(left.distance(mirrored) < 0.15, "{steering:?}: {left}, {right}");
+        }
     }
 
     #[test]

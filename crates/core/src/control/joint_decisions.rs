@@ -225,9 +225,9 @@ mod tests {
         let words = |joint| in_words(situation(&senses, joint, joint == 3));
         assert_eq!(words(0), "joint behind arched");
         let second =
-            "arched, limb behind touches, riser within a metre of the limb ahead, step ahead";
+            "arched, block behind touches, riser within a metre of the block ahead, step ahead";
         assert_eq!(words(1), second);
-        assert_eq!(words(2), "joint ahead arched, limb ahead touches");
+        assert_eq!(words(2), "joint ahead arched, block ahead touches");
         assert_eq!(words(3), "moving");
     }
 }

@@ -179,7 +179,7 @@ impl Perception {
         joints.chain(limbs).chain([yaw, speed_ahead, speed_up, aside])
     }
 
-    /// Returns the name of value number `index` of [`Self::values`] for a snake with this many joints, such as "limb 2 gap".
+    /// Returns the name of value number `index` of [`Self::values`] for a snake with this many joints, such as "block 2 gap".
     pub fn name(index: usize, joints: usize) -> String {
         let [of_joints, of_limbs, of_snake] =
             [&SenseKind::ALL[..4], &SenseKind::ALL[4..12], &SenseKind::ALL[12..]];
@@ -192,7 +192,7 @@ impl Perception {
         }
         let index = index - 4 * joints;
         if index < 8 * (joints + 1) {
-            return part(of_limbs, "limb", index);
+            return part(of_limbs, "block", index);
         }
         let index = index - 8 * (joints + 1);
         of_snake.get(index).map_or("bias", |kind| kind.info().name).to_owned()
@@ -299,7 +299,7 @@ mod tests {
         for (index, value) in values.into_iter().enumerate() {
             let name = Perception::name(index, 2);
             let expected = match name.as_str() {
-                "limb 2 gap" => 0.25,
+                "block 2 gap" => 0.25,
                 "joint 2 twist" => -0.5,
                 "aside" => 0.75,
                 _ => 0.0,

@@ -1,12 +1,14 @@
 //! Records of generations: the numbers that the log of a run has of each generation.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::plan::RunPlan;
 use super::stairs_tree::StairsCount;
 use crate::check::{Invalid, hex_hash, within};
-use crate::score::{FITNESS_RANGE, Trial};
+use crate::score::{EndingKind, Evaluation, FITNESS_RANGE, Trial};
 
 /// Record of a finished generation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,6 +36,9 @@ pub struct GenerationRecord {
     /// numbers of blocks. Empty for other strategies, and in logs of earlier versions of the program.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub species: Vec<SpeciesCount>,
+    /// Ways in which the trials of the individuals ended, in the order of [`EndingKind`]. Empty in logs of earlier versions of the program.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub endings: Vec<BandCount<EndingKind>>,
     /// Rung of the ladder on which the generation was evaluated. None without a ladder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rung: Option<Rung>,
@@ -85,27 +90,68 @@ pub struct Rung {
 /// Maximum number of species in the record of a generation. It limits the size of a log, so that the log of the longest run can be read.
 pub const MOST_SPECIES_RECORDED: usize = 24;
 
-/// A species in a generation. Files have it as a list of number, size and best fitness.
+/// Number and best fitness of those individuals of a generation that share a species, a number of blocks or an ending. Files have it as a list
+/// of id, size and best fitness.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(into = "(u32, u32, Option<f32>)", from = "(u32, u32, Option<f32>)")]
-pub struct SpeciesCount {
-    /// Number of the species, ascending in the order of appearance.
-    pub id: u32,
-    /// Number of individuals of the species, at least 1.
+#[serde(
+    into = "(Id, u32, Option<f32>)",
+    from = "(Id, u32, Option<f32>)",
+    bound(serialize = "Id: Copy + Serialize", deserialize = "Id: Deserialize<'de>")
+)]
+pub struct BandCount<Id> {
+    /// Shared species, number of blocks or ending.
+    pub id: Id,
+    /// Number of these individuals, at least 1.
     pub size: u32,
-    /// Best fitness of the species' healthy individuals. None if all of them were disqualified.
+    /// Best fitness of the healthy ones. None if all of them were disqualified.
     pub best: Option<f32>,
 }
 
-impl From<SpeciesCount> for (u32, u32, Option<f32>) {
-    fn from(SpeciesCount { id, size, best }: SpeciesCount) -> Self {
+/// A species in a generation. The ids of species ascend in the order of appearance.
+pub type SpeciesCount = BandCount<u32>;
+
+impl<Id> From<BandCount<Id>> for (Id, u32, Option<f32>) {
+    fn from(BandCount { id, size, best }: BandCount<Id>) -> Self {
         (id, size, best)
     }
 }
 
-impl From<(u32, u32, Option<f32>)> for SpeciesCount {
-    fn from((id, size, best): (u32, u32, Option<f32>)) -> Self {
+impl<Id> From<(Id, u32, Option<f32>)> for BandCount<Id> {
+    fn from((id, size, best): (Id, u32, Option<f32>)) -> Self {
         Self { id, size, best }
+    }
+}
+
+impl<Id: Copy + Ord + Serialize> BandCount<Id> {
+    /// Counts individuals by their ids, in ascending order. `ids` has the id of each individual.
+    pub fn of(ids: impl IntoIterator<Item = Id>, evaluations: &[Evaluation]) -> Vec<Self> {
+        let mut counts: BTreeMap<Id, Self> = BTreeMap::new();
+        for (id, evaluation) in ids.into_iter().zip(evaluations) {
+            let count = counts.entry(id).or_insert(Self { id, size: 0, best: None });
+            count.size += 1;
+            if evaluation.disqualified.is_none() {
+                let fitness = evaluation.fitness;
+                count.best = Some(count.best.map_or(fitness, |best| best.max(fitness)));
+            }
+        }
+        counts.into_values().collect()
+    }
+
+    /// Checks that the ids ascend and that all counts together have at most as many members as the generation has individuals.
+    fn check(counts: &[Self], evaluations: u32) -> Result<(), Invalid> {
+        within("number of counts", counts.len(), 0..=MOST_SPECIES_RECORDED)?;
+        if let Some([before, wrong]) = counts.array_windows().find(|[a, b]| a.id >= b.id) {
+            let name = |of: &Self| serde_json::to_string(&of.id).unwrap_or_default();
+            return Err(Invalid::new("id", name(wrong), format!("one after {}", name(before))));
+        }
+        let (mut members, evaluations) = (0, u64::from(evaluations));
+        for Self { size, best, .. } in counts {
+            within("size", u64::from(*size), 1..=evaluations)?;
+            best.map_or(Ok(()), |best| within("best", best, FITNESS_RANGE))?;
+            members += u64::from(*size);
+            within("sum of size", members, 0..=evaluations)?;
+        }
+        Ok(())
     }
 }
 
@@ -158,30 +204,15 @@ impl GenerationRecord {
             let mut values = values.into_iter().chain(quartiles);
             values.try_for_each(|value| within("statistics", value, fitness.clone()))?;
         }
-        self.check_species()?;
+        let of_species = BandCount::check(&self.species, self.evaluations);
+        of_species.map_err(|error| error.inside("species"))?;
+        let of_endings = BandCount::check(&self.endings, self.evaluations);
+        of_endings.map_err(|error| error.inside("endings"))?;
         if let Some(Rung { rise_m, successes }) = self.rung {
             within("rung.rise_m", rise_m, 0.0..=5.0)?;
             within("rung.successes", successes, 0..=self.evaluations)?;
         }
         self.stairs.map_or(Ok(()), StairsCount::check)
-    }
-
-    /// Checks that the species ascend in number and together have at most as many members as the generation has individuals.
-    fn check_species(&self) -> Result<(), Invalid> {
-        let evaluations = u64::from(self.evaluations);
-        within("number of species", self.species.len(), 0..=MOST_SPECIES_RECORDED)?;
-        let (mut members, mut least_id) = (0, 0);
-        for SpeciesCount { id, size, best } in &self.species {
-            within("species.id", u64::from(*id), least_id..=u64::from(u32::MAX))?;
-            within("species.size", u64::from(*size), 1..=evaluations)?;
-            if let Some(best) = best {
-                within("species.best", *best, FITNESS_RANGE)?;
-            }
-            least_id = u64::from(*id) + 1;
-            members += u64::from(*size);
-            within("sum of species.size", members, 0..=evaluations)?;
-        }
-        Ok(())
     }
 
     /// Makes a record of healthy individuals without statistics, for tests.
@@ -196,6 +227,7 @@ impl GenerationRecord {
             statistics: None,
             chosen_by: None,
             species: Vec::new(),
+            endings: Vec::new(),
             rung: None,
             stairs: None,
             hash: 0x0123_4567_89ab_cdef,

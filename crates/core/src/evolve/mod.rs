@@ -21,7 +21,7 @@ pub use archives::{
 pub use candidate::{Candidate, OwnStairs};
 pub use champion::{Champion, Origin};
 pub use generation::{
-    GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, Statistics, run_hash,
+    BandCount, GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, Statistics, run_hash,
 };
 pub use parents::{IndividualId, Parents};
 pub use plan::{

@@ -70,7 +70,7 @@ impl GenomeSpace {
             }
         });
         result?;
-        same("genes", genome.gene_count(), zeroed.gene_count())
+        same("genes", genome.gene_count(self), zeroed.gene_count(self))
     }
 
     /// Returns the shape that a genome must have. Where bodies evolve, it has the genome's own number of joints.
@@ -149,6 +149,7 @@ mod tests {
     fn space(controller: ControllerKind) -> GenomeSpace {
         let mut space = GenomeSpace { controller, ..GenomeSpace::default() };
         space.wave.harmonics = 2;
+        space.wave.steering_range_rad = 1.5;
         space
     }
 

@@ -51,11 +51,20 @@ impl Genome {
         }
     }
 
-    /// Counts the genes.
-    pub fn gene_count(&self) -> usize {
+    /// Counts the genes that the genome has in a space.
+    pub fn gene_count(&self, space: &GenomeSpace) -> usize {
         let mut count = 0;
-        self.clone().visit(&GenomeSpace::default(), |_, _| count += 1);
+        self.clone().visit(space, |_, _| count += 1);
         count
+    }
+
+    /// Returns whether the controller senses contacts, attitude or the stairs ahead, besides its joints.
+    pub fn senses_surroundings(&self) -> bool {
+        let steers = match &self.controller {
+            ControllerGenes::Gait(gait) => gait.steering.is_used(),
+            _ => false,
+        };
+        steers || self.controller.kind().senses_surroundings()
     }
 
     /// Returns a hash (XXH3, 64 bits) over the bits of all genes. Equal genomes have equal hashes. The hash seeds repeated trials, so the

@@ -25,7 +25,7 @@ choices! {
         Rules = "rules", "Rules", "Rules choose among a few waves by what the snake senses.";
         Grown = "grown", "Grown", "A network for the whole snake, to which evolution adds nodes and links.";
         LimbNeurons = "limb_neurons", "Limb neurons",
-            "Four neurons in each limb, wired to one another, to the neighbouring limbs and to senses.";
+            "Four neurons in each block, wired to one another, to the neighbouring blocks and to senses.";
         PartNeurons = "part_neurons", "Part neurons",
             "Neurons in each part of a branching body, which grow with the part.";
     }

@@ -62,8 +62,8 @@ setting_group! {
 
         /// Whether all limbs have the same neurons, for controllers with neurons in the limbs.
         limb_neurons_shared: bool = true,
-            switch("Same neurons in all limbs")
-                .hint("Limb neurons are the same in every limb. Otherwise each limb evolves its own, which multiplies the genes");
+            switch("Same neurons in all blocks")
+                .hint("Neurons are the same in every block. Otherwise each block evolves its own, which multiplies the genes");
     }
 }
 

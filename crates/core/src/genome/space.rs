@@ -140,6 +140,12 @@ impl SettingGroup for GenomeSpace {
 }
 
 impl GenomeSpace {
+    /// Returns whether the controllers of this space can sense contacts, attitude or the stairs ahead, besides their joints.
+    pub fn senses_surroundings(&self) -> bool {
+        let steers = self.controller == ControllerKind::Gait && self.wave.steering_range_rad > 0.0;
+        steers || self.controller.senses_surroundings()
+    }
+
     /// Section of settings for the kind of controller.
     pub const CONTROLLER: Section =
         Section { title: "Controller", about: "How genes become torques." };

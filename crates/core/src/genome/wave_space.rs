@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::gene::{GeneRange, Genes, Quantity};
 use crate::check::{Invalid, within};
-use crate::schema::{number, setting_group, whole};
+use crate::schema::{is_default, number, setting_group, whole};
 
 setting_group! {
     /// Ranges of the genes of periodic controllers.
@@ -48,6 +48,17 @@ setting_group! {
                 .hint(
                     "Maximum amplitude of a gait's twists, and maximum offset in either direction. With 0, a joint that \
                      may twist is held straight and yields under load",
+                )
+                .slider(0.0, 3.0);
+
+        /// Greatest angle by which a sense of balance moves the twist targets of a gait, in radians per sense. With 0, a gait does not steer.
+        #[serde(default, skip_serializing_if = "is_default")]
+        steering_range_rad: f32 = 0.0,
+            number("Steering range", 0.0..=super::LARGEST_LIMIT_RAD)
+                .unit("rad")
+                .hint(
+                    "How far a gait may twist its joints when the snake heads aside, is beside the middle of the stairs or rolls. \
+                     With 0, it does not steer",
                 )
                 .slider(0.0, 3.0);
 

@@ -153,7 +153,7 @@ impl LoadedChampion {
 mod tests {
     use super::*;
     use crate::save::store_exam;
-    use crate::score::{Behaviour, ExamSuite};
+    use crate::score::{Behaviour, Ending, Endings, ExamSuite};
     use std::fs;
 
     use crate::evolve::{Origin, RunPlan, Settings, begin};
@@ -275,6 +275,7 @@ mod tests {
             median_steps: 10.0,
             kept: 0.7,
             each: vec![("120 Hz".to_owned(), 0.9), ("240 Hz".to_owned(), 0.7)],
+            endings: Endings::of([Ending::CRASHED; 5].iter()),
         };
         // The exam is stored twice, as when it is repeated.
         for _ in 0..2 {
@@ -309,6 +310,7 @@ mod tests {
             median_steps: 10.0,
             kept: 0.7,
             each: Vec::new(),
+            endings: Endings::default(),
         };
         for suite in [ExamSuite::Shove, ExamSuite::Trials] {
             store_exam(&path, &loaded, &[of(suite)]).expect("written");

@@ -101,6 +101,12 @@ pub enum SaveError {
     },
 }
 
+impl From<SaveError> for String {
+    fn from(error: SaveError) -> Self {
+        error.to_string()
+    }
+}
+
 impl SaveError {
     /// Makes the error of an unreadable file or folder from the system's reason.
     pub fn unreadable(path: &Path) -> impl Fn(std::io::Error) -> Self + Copy {

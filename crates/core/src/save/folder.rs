@@ -20,6 +20,13 @@ use crate::evolve::RunPlan;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SavesFolder(PathBuf);
 
+impl Default for SavesFolder {
+    /// Returns the folder that is used if the user names none: see [`Self::find`].
+    fn default() -> Self {
+        Self::find(None)
+    }
+}
+
 impl SavesFolder {
     /// Returns the folder that the user named; otherwise `saves/` in the working directory, if it exists; otherwise the platform's data
     /// folder.
@@ -55,6 +62,15 @@ impl SavesFolder {
         let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));
         let mut free = (1..=u32::MAX).map(path).filter(|path| path.symlink_metadata().is_err());
         free.next().unwrap_or_else(|| path(0))
+    }
+
+    /// Makes the folder if it is missing, and returns its first free path as [`Self::free_name`] does.
+    ///
+    /// # Errors
+    /// The folder cannot be made.
+    pub fn new_file(&self, name: &str, extension: &str) -> Result<PathBuf, SaveError> {
+        self.prepare()?;
+        Ok(self.free_name(name, extension))
     }
 
     /// Returns the path of the folder.

@@ -109,7 +109,8 @@ pub fn parse_evaluations(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{Rung, Settings, SpeciesCount};
+    use crate::evolve::{BandCount, Rung, Settings, SpeciesCount};
+    use crate::score::EndingKind;
 
     fn record() -> GenerationRecord {
         GenerationRecord::of_test(1, 5)
@@ -156,13 +157,18 @@ mod tests {
         for (species, problem) in [
             (vec![of(1, 0, None)], "species.size is 0; allowed: 1 to 5"),
             (vec![of(1, 6, None)], "species.size is 6; allowed: 1 to 5"),
-            (vec![of(1, 3, None), of(2, 3, None)], "sum of species.size is 6; allowed: 0 to 5"),
-            (vec![of(2, 1, None), of(2, 1, None)], "species.id is 2; allowed: 3 to 4294967295"),
+            (vec![of(1, 3, None), of(2, 3, None)], "species.sum of size is 6; allowed: 0 to 5"),
+            (vec![of(2, 1, None), of(2, 1, None)], "species.id is 2; allowed: one after 2"),
             (vec![of(1, 1, Some(f32::MAX))], "species.best is 3.4028235e38"),
-            (vec![of(1, 1, None); 25], "number of species is 25; allowed: 0 to 24"),
+            (vec![of(1, 1, None); 25], "species.number of counts is 25; allowed: 0 to 24"),
         ] {
             let error = with(species).expect_err("refused").to_string();
             assert!(error.contains(problem), "{error}");
         }
+        let ending = |id| BandCount { id, size: 1, best: None };
+        let endings = [EndingKind::OffTheSide, EndingKind::Landed].map(ending).to_vec();
+        let error = read_again(&GenerationRecord { endings, ..record() }).expect_err("refused");
+        let problem = "endings.id is \"landed\"; allowed: one after \"off-the-side\"";
+        assert!(error.to_string().contains(problem), "{error}");
     }
 }

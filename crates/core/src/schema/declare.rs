@@ -104,6 +104,7 @@ macro_rules! choices {
 }
 
 /// Declares an enum with the list `ALL` of its values: `pub enum Side { Left; Right; }`.
+#[macro_export]
 macro_rules! listed_values {
     (
         $(#[$meta:meta])*
@@ -123,6 +124,7 @@ macro_rules! listed_values {
 }
 
 /// Declares an enum with a list `ALL` and a `name` for each value: `pub enum Side { Left = "left side"; }`.
+#[macro_export]
 macro_rules! named_values {
     (
         $(#[$meta:meta])*
@@ -142,7 +144,7 @@ macro_rules! named_values {
         }
 
         impl $named {
-            /// Returns the name in lower case.
+            /// Returns the name of the value.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$value => $name,)* }
             }
@@ -187,4 +189,4 @@ macro_rules! named_by_info {
     };
 }
 
-pub(crate) use {listed_values, named_by_info, named_values, setting_group, settings};
+pub(crate) use {named_by_info, setting_group, settings};

@@ -23,9 +23,11 @@ mod value;
 mod walk;
 
 pub use crate::choices;
+pub use crate::listed_values;
+pub use crate::named_values;
 pub use access::{check, find, list, set_text, set_value};
 pub use choice::{Choice, Choices};
-pub(crate) use declare::{listed_values, named_by_info, named_values, setting_group, settings};
+pub(crate) use declare::{named_by_info, setting_group, settings};
 pub use display::DisplayUnit;
 pub use parts::Parts;
 pub use per_part::PerPart;

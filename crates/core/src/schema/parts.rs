@@ -26,17 +26,17 @@ impl Parts {
     pub fn word(self) -> &'static str {
         match self {
             Self::One => "value",
-            Self::Limbs(_) => "limb",
+            Self::Limbs(_) => "block",
             Self::Joints(_) => "joint",
             Self::Steps(_) => "step",
         }
     }
 
-    /// Returns the title of the part with an index from 0, such as "Limb 1, the head"; empty for a single value.
+    /// Returns the title of the part with an index from 0, such as "Block 1, the head"; empty for a single value.
     pub fn name(self, index: usize) -> String {
         let (word, first) = match self {
             Self::One => return String::new(),
-            Self::Limbs(_) => ("Limb", ", the head"),
+            Self::Limbs(_) => ("Block", ", the head"),
             Self::Joints(_) => ("Joint", ""),
             Self::Steps(_) => ("Step", ", the lowest"),
         };

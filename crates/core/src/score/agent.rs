@@ -128,22 +128,22 @@ impl SettingGroup for AgentSettings {
         walk.section(Section { title: "Body", about: "Number, size and weight of the blocks." });
         settings! { walk,
             // The range begins with the two limbs of a single joint. With more than twelve limbs, the snake is longer than the arena.
-            limbs: whole("Limbs", 2..=12)
+            limbs: whole("Blocks", 2..=12)
                 .needs(Self::GIVEN_BODY)
-                .hint("Number of limbs (blocks) of the snake. Genomes for a different number do not fit")
+                .hint("Number of blocks of the snake. Genomes for a different number do not fit")
                 .slider(2.0, 12.0);
             // The range goes from a finger to a bus. The engine's tolerances are made for sizes around a metre.
-            limb_width_m: per_part("Limb width", 0.1..=10.0, each_limb)
+            limb_width_m: per_part("Block width", 0.1..=10.0, each_limb)
                 .needs(Self::GIVEN_BODY)
                 .unit("m")
-                .hint("Size of a block across the stairs. Wide blocks do not roll over")
+                .hint("Size of a block across the stairs. Wide blocks roll over less easily")
                 .slider(0.2, 3.0);
-            limb_length_m: per_part("Limb length", 0.1..=10.0, each_limb)
+            limb_length_m: per_part("Block length", 0.1..=10.0, each_limb)
                 .needs(Self::GIVEN_BODY)
                 .unit("m")
-                .hint("Size of a block along the snake. Long blocks reach further and bend less")
+                .hint("Size of a block along the snake. Long blocks reach further, but joints are further apart")
                 .slider(0.2, 5.0);
-            limb_height_m: per_part("Limb height", 0.1..=10.0, each_limb)
+            limb_height_m: per_part("Block height", 0.1..=10.0, each_limb)
                 .needs(Self::GIVEN_BODY)
                 .unit("m")
                 .hint("Size of a block upwards. Tall blocks reach the next step more easily")
@@ -165,7 +165,7 @@ impl SettingGroup for AgentSettings {
                 .logarithmic_from(0.1);
         }
         walk.section(Section {
-            title: "Soft limbs",
+            title: "Soft blocks",
             about: "Elasticity of the blocks. A soft block is a row of parts with springs between them.",
         });
         settings! { walk,
@@ -222,8 +222,8 @@ impl SettingGroup for AgentSettings {
             joint_damping_nms_per_rad: per_part("Joint damping", 0.0..=1.0e5, each_joint)
                 .unit("N·m·s/rad")
                 .hint(
-                    "Resistance of a joint to turning. Without it, motion is chaotic and children hardly resemble \
-                     their parents",
+                    "Resistance that grows with the speed at which a joint turns. Without it, motion is chaotic and children \
+                     hardly move like their parents",
                 )
                 .slider(0.0, 500.0)
                 .logarithmic_from(1.0);
@@ -261,7 +261,7 @@ impl AgentSettings {
     /// Needed by settings of bodies that evolve.
     pub const OWN_BODIES: Need = Need("bodies that evolve");
     /// Needed by settings of soft limbs.
-    pub const SOFT_LIMBS: Need = Need("soft limbs");
+    pub const SOFT_LIMBS: Need = Need("soft blocks");
     /// Needed by settings of a controller that senses its surroundings.
     pub const SENSING: Need = Need("a controller that senses its surroundings");
 

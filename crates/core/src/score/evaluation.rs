@@ -3,13 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::behaviour::Behaviour;
+use super::ending::Ending;
 use super::fitness::FITNESS_RANGE;
 use crate::check::{Invalid, hex_hash, within};
 use crate::world::{Disqualification, Effort, Stairs};
 
 /// The result of a rollout.
 ///
-/// In files, a disqualification is stored beside the evaluation, not in it.
+/// In files, a disqualification is stored beside the evaluation; the ending names its reason, too.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluation {
@@ -31,6 +32,9 @@ pub struct Evaluation {
     pub effort: Option<Effort>,
     /// Measures of the motion. `None` in records without these measurements.
     pub behaviour: Option<Behaviour>,
+    /// How the trial ended. `None` in records of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ending: Option<Ending>,
 }
 
 impl Evaluation {
@@ -44,6 +48,7 @@ impl Evaluation {
             steps: 1,
             effort: None,
             behaviour: None,
+            ending: None,
         }
     }
 
@@ -57,6 +62,7 @@ impl Evaluation {
             steps: 0,
             effort: None,
             behaviour: None,
+            ending: Some(Ending::CRASHED),
         }
     }
 
@@ -70,7 +76,9 @@ impl Evaluation {
         let effort = self.effort.map_or(Ok(()), Effort::check);
         effort.map_err(|error| error.inside("effort"))?;
         let behaviour = self.behaviour.map_or(Ok(()), Behaviour::check);
-        behaviour.map_err(|error| error.inside("behaviour"))
+        behaviour.map_err(|error| error.inside("behaviour"))?;
+        let ending = self.ending.map_or(Ok(()), |ending| ending.check());
+        ending.map_err(|error| error.inside("ending"))
     }
 
     /// Returns whether both evaluations have the same bits. A value that one of them lacks is not compared.
@@ -78,10 +86,12 @@ impl Evaluation {
         fn agree<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
             a.is_none() || b.is_none() || a == b
         }
-        let bare = |evaluation: &Self| Self { effort: None, behaviour: None, ..*evaluation };
+        let bare =
+            |evaluation: &Self| Self { effort: None, behaviour: None, ending: None, ..*evaluation };
         bare(self) == bare(other)
             && agree(self.effort, other.effort)
             && agree(self.behaviour, other.behaviour)
+            && agree(self.ending, other.ending)
     }
 
     /// Returns whether the agent was not disqualified and ended with all steps of the stairs under its middle limb.

@@ -6,8 +6,9 @@ pub use suites::varied;
 
 use serde::{Deserialize, Serialize};
 
+use super::ending::median;
 use super::way_up::{Arrival, mean_steps};
-use super::{Evaluation, Perturbation, Rollout, Trial};
+use super::{Ending, Endings, Evaluation, Perturbation, Rollout, Trial};
 use crate::check::{Invalid, quoted, within};
 use crate::genome::{Genome, HELD_OUT_PER_CLASS, StairsClass};
 use crate::schema::{Choices, choices};
@@ -27,7 +28,7 @@ choices! {
             "One step, of the fourth to ninth where there are so many, has 1.4 times the rise; 5 positions of the first riser; \
              30 s each.";
         Shove = "shove", "Shoves",
-            "One limb's velocity changes by 2 m/s, 3 to 8 s after the start. A landing counts if it comes at most 5 s later \
+            "One block's velocity changes by 2 m/s, 3 to 8 s after the start. A landing counts if it comes at most 5 s later \
              than without the shove.";
         Lesion = "lesion", "Frozen senses",
             "The 100 other stairs, on which sight, touch and balance keep the values of the snake at rest: what remains is \
@@ -70,6 +71,8 @@ pub struct ExamEnd {
     pub has_landed: bool,
     /// Whether the snake was disqualified.
     pub is_disqualified: bool,
+    /// How the trial ended.
+    pub ending: Ending,
 }
 
 /// The result of one suite.
@@ -92,6 +95,9 @@ pub struct SuiteResult {
     /// Label and share of each condition, for a suite of few conditions. For the held-out stairs: name of each class, and the share of its
     /// staircases on which the champion landed.
     pub each: Vec<(String, f32)>,
+    /// How the trials ended. Empty in records of earlier versions.
+    #[serde(default, skip_serializing_if = "Endings::is_empty")]
+    pub endings: Endings,
 }
 
 impl ExamSuite {
@@ -112,7 +118,7 @@ impl ExamSuite {
     /// Returns whether the suite can test a genome. For instance, senses that a controller does not use cannot be switched off.
     pub fn concerns(self, genome: &Genome) -> bool {
         match self {
-            Self::Lesion => genome.controller.kind().senses_surroundings(),
+            Self::Lesion => genome.senses_surroundings(),
             _ => true,
         }
     }
@@ -138,6 +144,7 @@ impl ExamEnd {
         arrived_s: None,
         has_landed: false,
         is_disqualified: true,
+        ending: Ending::CRASHED,
     };
 
     /// Checks that every value is one with which a trial can end.
@@ -151,12 +158,13 @@ impl ExamEnd {
             time_s.map_or(Ok(()), |time_s| within(field, time_s, 0.0..=1.0e4))
         };
         time("landed_s", self.landed_s)?;
-        time("arrived_s", self.arrived_s)
+        time("arrived_s", self.arrived_s)?;
+        self.ending.check()
     }
 
     /// Returns the share of the distance to the landing with which an evaluation ended, 0 to 1; 0 after a disqualification.
     pub fn way_of(evaluation: &Evaluation, trial: &Trial) -> f32 {
-        Self::new(evaluation, &trial.stairs, trial.start_y_m).way
+        way_of_end(evaluation, &trial.stairs, trial.start_y_m)
     }
 
     /// Simulates a genome in a condition and returns the end of the trial.
@@ -174,33 +182,19 @@ impl ExamEnd {
         }
         let evaluation = rollout.evaluation();
         let start_y_m = trial.middle_start_y_m(genome) + perturbation.ahead_m;
-        let arrived_s = arrival.arrived_s();
-        Self { landed_s, arrived_s, ..Self::new(&evaluation, rollout.stairs(), start_y_m) }
-    }
-
-    /// Describes the end of a simulated trial, without its times.
-    fn new(evaluation: &Evaluation, stairs: &Stairs, start_y_m: f32) -> Self {
-        let is_disqualified = evaluation.disqualified.is_some();
-        let steps = match evaluation.behaviour {
-            Some(behaviour) if !is_disqualified => behaviour.steps_climbed,
-            _ => 0,
-        };
         Self {
-            steps,
-            way: if is_disqualified {
-                0.0
-            } else {
-                way(evaluation.centre_y_m, steps, stairs, start_y_m)
-            },
-            landed_s: None,
-            arrived_s: None,
-            has_landed: evaluation.is_on_landing(stairs),
-            is_disqualified,
+            steps: steps_of_end(&evaluation),
+            way: way_of_end(&evaluation, rollout.stairs(), start_y_m),
+            landed_s,
+            arrived_s: arrival.arrived_s(),
+            has_landed: evaluation.is_on_landing(rollout.stairs()),
+            is_disqualified: evaluation.disqualified.is_some(),
+            ending: rollout.ending(),
         }
     }
 
     /// Describes the end of a healthy trial whose middle limb ended at `middle_m`, in metres.
-    pub(super) fn at(middle_m: [f32; 3], stairs: &Stairs, start_y_m: f32) -> Self {
+    pub(super) fn at(middle_m: [f32; 3], stairs: &Stairs, start_y_m: f32, ending: Ending) -> Self {
         let steps = stairs.steps_under(middle_m);
         Self {
             steps,
@@ -209,8 +203,23 @@ impl ExamEnd {
             arrived_s: None,
             has_landed: stairs.steps > 0 && steps == stairs.steps,
             is_disqualified: false,
+            ending,
         }
     }
+}
+
+/// Returns the number of steps under the middle limb at the end of a trial; 0 after a disqualification.
+fn steps_of_end(evaluation: &Evaluation) -> u32 {
+    let behaviour = evaluation.behaviour.filter(|_| evaluation.disqualified.is_none());
+    behaviour.map_or(0, |behaviour| behaviour.steps_climbed)
+}
+
+/// Returns the share of the distance to the landing with which an evaluation ended, 0 to 1; 0 after a disqualification.
+fn way_of_end(evaluation: &Evaluation, stairs: &Stairs, start_y_m: f32) -> f32 {
+    if evaluation.disqualified.is_some() {
+        return 0.0;
+    }
+    way(evaluation.centre_y_m, steps_of_end(evaluation), stairs, start_y_m)
 }
 
 /// Returns the share of the distance from the start to the landing that was covered at the end of a trial, 0 to 1.
@@ -244,7 +253,7 @@ impl SuiteResult {
             }
             within("kept", *kept, 0.0..=1.0e6)?;
         }
-        Ok(())
+        self.endings.check(self.trials).map_err(|error| error.inside("endings"))
     }
 
     /// Computes the result of a suite. `own` is the end of the champion's own trial, undisturbed and as long as the suite's trials; `ends`
@@ -297,6 +306,7 @@ impl SuiteResult {
             median_steps: median(ends.iter().map(|end| end.steps as f32).collect()),
             kept,
             each,
+            endings: Endings::of(ends.iter().map(|end| &end.ending)),
         }
     }
 
@@ -315,6 +325,7 @@ impl SuiteResult {
             median_steps: median(other.iter().map(|end| end.steps as f32).collect()),
             kept: median(shares.map(|(own, other)| other.way / own.way).collect()),
             each: Vec::new(),
+            endings: Endings::of(other.iter().map(|end| &end.ending)),
         }
     }
 
@@ -328,13 +339,6 @@ impl SuiteResult {
         let classes = self.each.iter();
         classes.map(|(name, share)| (name.as_str(), landed(*share), HELD_OUT_PER_CLASS)).collect()
     }
-}
-
-/// Returns the median; for an even number of values, the mean of the two middle ones; 0 without values.
-pub fn median(mut values: Vec<f32>) -> f32 {
-    values.sort_by(f32::total_cmp);
-    let Some(last) = values.len().checked_sub(1) else { return 0.0 };
-    (values[last / 2] + values[values.len() / 2]) / 2.0
 }
 
 #[cfg(test)]

@@ -144,6 +144,8 @@ pub(super) struct FinalState<'a> {
     pub stairs: &'a Stairs,
     /// Progress of the body over the stairs so far, on which [`Fitness::Share`] depends.
     pub way: &'a WayUp,
+    /// Number of steps that a part has touched, on which [`Fitness::Share`] depends.
+    pub touched_steps: u32,
 }
 
 impl FinalState<'_> {
@@ -169,7 +171,8 @@ impl FinalState<'_> {
             Fitness::FurthestY => self.furthest_y_m,
             Fitness::StepsClimbed => self.stairs.steps_under([middle.x, middle.y, middle.z]) as f32,
             Fitness::Share => {
-                self.way.share(mean_steps(self.body, self.poses, self.stairs), self.stairs)
+                let steps = mean_steps(self.body, self.poses, self.stairs);
+                self.way.share(steps, self.touched_steps, self.stairs)
             }
         }
     }
@@ -203,7 +206,8 @@ mod tests {
         let score = |fitness, x, z| {
             let poses = [pose(0.0, 10.0, 1.0), pose(x, 6.0, z), pose(0.0, 4.0, 1.0)];
             let way = WayUp::begin(&body, &poses, &stairs);
-            FinalState { body: &body, poses: &poses, furthest_y_m: 9.5, stairs: &stairs, way: &way }
+            let (body, poses, stairs, way) = (&body, &poses, &stairs, &way);
+            FinalState { body, poses, furthest_y_m: 9.5, stairs, way, touched_steps: 0 }
                 .score(fitness)
         };
         for (fitness, expected) in [

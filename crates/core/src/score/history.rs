@@ -155,11 +155,10 @@ mod tests {
 
     /// Returns every bit of the bodies' motion.
     fn state(rollout: &Rollout) -> Vec<[u32; 13]> {
-        let bodies = rollout.simulation().physics().bodies.iter();
-        bodies
-            .map(|(_, body)| {
-                let (at, turn) = (body.translation(), body.rotation());
-                let (speed, spin) = (body.linvel(), body.angvel());
+        let parts = rollout.simulation().parts().iter();
+        parts
+            .map(|part| {
+                let (at, turn, speed, spin) = (part.at, part.turn, part.linear, part.angular);
                 [
                     at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w, speed.x, speed.y, speed.z,
                     spin.x, spin.y, spin.z,

@@ -1,9 +1,10 @@
 //! A rollout whose motion another engine computes. The controller senses and drives the limbs in this engine.
 
+use super::ending::Watch;
 use super::{ExamCondition, ExamEnd};
 use crate::control::ControlLoop;
 use crate::genome::Genome;
-use crate::world::{JointTorque, LimbState, Simulation, WorldPlan};
+use crate::world::{Disqualification, JointTorque, LimbState, Pose, Simulation, WorldPlan};
 
 /// A champion's controller that drives a snake in another engine.
 pub struct MirroredRollout {
@@ -14,11 +15,13 @@ pub struct MirroredRollout {
     torques: Vec<JointTorque>,
     step: u32,
     last_step: u32,
-    is_disqualified: bool,
+    watch: Watch,
+    disqualified: Option<Disqualification>,
 }
 
 impl MirroredRollout {
-    /// Prepares a rollout of a genome in a condition, before its first step. It ignores a shove.
+    /// Prepares a rollout of a genome in a condition, before its first step. It ignores shoves, faults of the drives and pushes, which no judge
+    /// draws.
     pub fn new(genome: &Genome, ExamCondition { trial, perturbation, .. }: &ExamCondition) -> Self {
         let mut plan = trial.world_plan(genome);
         perturbation.apply(&mut plan);
@@ -27,9 +30,10 @@ impl MirroredRollout {
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             last_step: super::trial::steps_in(trial.duration_s, &plan.physics),
             world: Simulation::new(&plan),
+            watch: Watch::new(&plan.body, &plan.stairs, plan.physics.gravity_m_s2),
             plan,
             step: 0,
-            is_disqualified: false,
+            disqualified: None,
         }
     }
 
@@ -45,7 +49,7 @@ impl MirroredRollout {
 
     /// Returns whether the trial's time is up or the snake is disqualified.
     pub fn is_over(&self) -> bool {
-        self.step >= self.last_step || self.is_disqualified
+        self.step >= self.last_step || self.disqualified.is_some()
     }
 
     /// Computes the torques of the step that begins, one per joint, clamped to the joints' limits.
@@ -64,37 +68,53 @@ impl MirroredRollout {
     /// errors of this program's engine.
     pub fn take(&mut self, limbs: &[LimbState]) {
         let health = &self.plan.health;
-        let is_healthy = |limb: &LimbState| {
-            let centre = limb.pose.translation;
-            centre.is_finite()
+        let trouble = |limb: &LimbState| {
+            let (centre, speed_m_s) = (limb.pose.translation, limb.velocity_m_s.length());
+            let is_finite = centre.is_finite()
                 && limb.pose.rotation.is_finite()
                 && limb.angular_velocity_rad_s.is_finite()
-                && limb.velocity_m_s.length() <= health.speed_m_s
-                && centre.x.abs() <= health.arena_half_width_m
-                && centre.y >= -health.arena_back_m
+                && speed_m_s.is_finite();
+            let is_inside =
+                centre.x.abs() <= health.arena_half_width_m && centre.y >= -health.arena_back_m;
+            match (is_finite, speed_m_s <= health.speed_m_s, is_inside) {
+                (false, ..) => Some(Disqualification::NotFinite),
+                (_, false, _) => Some(Disqualification::TooFast),
+                (.., false) => Some(Disqualification::LeftArena),
+                _ => None,
+            }
         };
-        if limbs.len() == self.plan.body.parts.len() && limbs.iter().all(is_healthy) {
+        self.disqualified = limbs.iter().find_map(trouble);
+        if limbs.len() != self.plan.body.parts.len() {
+            self.disqualify();
+        }
+        if self.disqualified.is_none() {
             self.world.mirror(limbs);
             self.step += 1;
-        } else {
-            self.disqualify();
+            let poses: Vec<Pose> = limbs.iter().map(|limb| limb.pose).collect();
+            let touching = limbs.iter().enumerate().filter(|(_, limb)| limb.contact_n.is_some());
+            let touching = touching.map(|(part, _)| part);
+            let flies = touching.clone().next().is_none();
+            let now_s = self.step as f32 * self.plan.physics.step_s();
+            self.watch.observe(now_s, &poses, touching, flies);
         }
     }
 
     /// Ends the trial with a disqualification, because the other engine cannot continue.
     pub fn disqualify(&mut self) {
-        self.is_disqualified = true;
+        self.disqualified = Some(Disqualification::NotFinite);
     }
 
     /// Returns the end of the trial, if it ends now. The time of landing is not recorded.
     pub fn end(&self) -> ExamEnd {
-        let middle = self.world.poses().nth(self.plan.body.middle_part);
-        match middle {
-            Some(middle) if !self.is_disqualified => {
+        let poses: Vec<Pose> = self.world.poses().collect();
+        let ending = self.watch.ending(self.disqualified, &poses);
+        let middle = poses.get(self.plan.body.middle_part);
+        match middle.filter(|_| self.disqualified.is_none()) {
+            Some(middle) => {
                 let middle_m = middle.translation.to_array();
-                ExamEnd::at(middle_m, &self.plan.stairs, self.plan.middle_start_y_m())
+                ExamEnd::at(middle_m, &self.plan.stairs, self.plan.middle_start_y_m(), ending)
             }
-            _ => ExamEnd::CRASHED,
+            None => ExamEnd { ending, ..ExamEnd::CRASHED },
         }
     }
 }

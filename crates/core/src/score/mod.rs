@@ -5,14 +5,17 @@
 
 mod agent;
 mod behaviour;
+mod ending;
 mod evaluation;
 mod exam;
+mod faults;
 mod fitness;
 mod history;
 mod mirrored;
 mod own_blocks;
 mod own_body;
 mod perturbation;
+mod perturbation_range;
 mod recording;
 mod repeats;
 mod rollout;
@@ -23,12 +26,14 @@ mod way_up;
 
 pub use agent::AgentSettings;
 pub use behaviour::Behaviour;
+pub use ending::{Ending, EndingCount, EndingKind, Endings, Trick, median};
 pub use evaluation::Evaluation;
-pub use exam::{ExamCondition, ExamEnd, ExamSuite, SuiteResult, median, varied};
+pub use exam::{ExamCondition, ExamEnd, ExamSuite, SuiteResult, varied};
 pub use fitness::{FITNESS_RANGE, Fitness, arrived_y_m};
 pub use history::KeyframeHistory;
 pub use mirrored::MirroredRollout;
-pub use perturbation::{Perturbation, PerturbationRange, StairsVariation};
+pub use perturbation::Perturbation;
+pub use perturbation_range::{PerturbationRange, StairsVariation};
 pub use recording::Recording;
 pub use repeats::{PerturbationList, RepeatAggregate, Repeats};
 pub use rollout::Rollout;

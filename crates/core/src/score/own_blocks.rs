@@ -31,6 +31,7 @@ impl Trial {
             ("surface.soft_cfm_m_s_per_n", self.surface.soft_cfm_m_s_per_n),
             ("ground.soft_cfm_m_s_per_n", self.ground().soft_cfm_m_s_per_n),
             ("agent.skin.soft_cfm_m_s_per_n", agent.skin.soft_cfm_m_s_per_n),
+            ("repeats.off.softness_m_s_per_n", self.repeats.off.softness_m_s_per_n),
         ] {
             if cfm > 0.0 {
                 return Err(Invalid::new(field, cfm, "0 while bodies evolve"));

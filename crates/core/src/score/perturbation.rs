@@ -1,136 +1,12 @@
 //! Random perturbations of a trial. They show whether a gait also works in slightly different conditions.
 
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
+use super::faults::{DriveFaults, SidePushes};
 use crate::check::{Invalid, within};
 use crate::genome::StairsGenome;
-use crate::schema::{check, choice, choices, is_default, number, setting_group};
-use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Stairs, Vector, WorldPlan};
-
-setting_group! {
-    /// Maximum perturbation of each quantity. Values are drawn uniformly on both sides of the nominal value.
-    #[derive(Copy)]
-    pub struct PerturbationRange {
-        /// Maximum relative change of the friction of stairs and ground.
-        friction: f32 = 0.2,
-            // The range ends at 0.9, so that no factor becomes zero or negative.
-            number("Friction variation", 0.0..=0.9)
-                .hint("Maximum relative change of friction: 0.2 is 20 % up or down")
-                .slider(0.0, 0.9);
-
-        /// Maximum relative change of the height of the steps.
-        rise: f32 = 0.1,
-            number("Rise variation", 0.0..=0.9)
-                .hint("Maximum relative change of the steps' height: 0.1 is 10 % up or down")
-                .slider(0.0, 0.9);
-
-        /// Maximum relative change of the density of the limbs.
-        density: f32 = 0.0,
-            number("Density variation", 0.0..=0.9).advanced()
-                .hint("Maximum relative change of the limbs' density")
-                .slider(0.0, 0.9);
-
-        /// Maximum shift of the start along y and along x, in metres.
-        start_m: f32 = 0.2,
-            number("Start variation", 0.0..=5.0).advanced()
-                .unit("m")
-                .hint("Maximum shift of the start, along and across the stairs")
-                .slider(0.0, 2.0);
-
-        /// Maximum turn of the snake at the start, in degrees.
-        turn_deg: f32 = 5.0,
-            number("Start direction variation", 0.0..=180.0).advanced()
-                .unit("°")
-                .hint("Maximum turn of the snake at the start, to either side")
-                .slider(0.0, 45.0);
-
-        /// Maximum relative change of the depth of the steps.
-        #[serde(default, skip_serializing_if = "is_default")]
-        tread: f32 = 0.0,
-            number("Tread variation", 0.0..=0.9).advanced()
-                .hint("Maximum relative change of the steps' depth: 0.1 is 10 % up or down")
-                .slider(0.0, 0.9);
-
-        /// Maximum relative change of the number of physics steps per second.
-        #[serde(default, skip_serializing_if = "is_default")]
-        step_rate: f32 = 0.0,
-            number("Step rate variation", 0.0..=0.9).advanced()
-                .hint(
-                    "Maximum relative change of the physics steps per second. A motion that only works at one step rate \
-                     exploits the simulation",
-                )
-                .slider(0.0, 0.9);
-
-        /// Largest change of a limb's velocity by a shove, in m/s; 0 for no shove.
-        #[serde(default, skip_serializing_if = "is_default")]
-        shove_m_s: f32 = 0.0,
-            number("Shove", 0.0..=10.0).advanced()
-                .unit("m/s")
-                .hint(
-                    "Maximum change of one limb's velocity at a random moment between a fifth and three fifths of the \
-                     trial, backwards, to either side or upwards",
-                )
-                .slider(0.0, 5.0);
-
-        /// Stairs of the perturbed trials.
-        #[serde(default, skip_serializing_if = "is_default")]
-        stairs: StairsVariation = StairsVariation::Own,
-            choice("Stairs of the variations").advanced()
-                .hint("Whether the varied trials stand on the stairs of the trial or on any others");
-    }
-}
-
-choices! {
-    /// Which stairs perturbed trials have.
-    #[derive(Default)]
-    pub enum StairsVariation {
-        #[default]
-        Own = "own", "Those of the trial", "The varied trials have the stairs of the trial, higher or deeper at most.";
-        /// Stairs drawn by [`StairsGenome::random`].
-        Drawn = "drawn", "Any others",
-            "Each varied trial has stairs of its own: equal, irregular, steep as in a house, or with nosing.";
-    }
-}
-
-impl PerturbationRange {
-    /// Draws a perturbation of a trial of this length, in seconds, for a snake with this number of limbs.
-    pub fn draw(&self, duration_s: f32, limbs: u32, rng: &mut ChaCha8Rng) -> Perturbation {
-        let mut draw = |range: f32| rng.random_range(-range..=range);
-        Perturbation {
-            friction: 1.0 + draw(self.friction),
-            rise: 1.0 + draw(self.rise),
-            density: 1.0 + draw(self.density),
-            ahead_m: draw(self.start_m),
-            aside_m: draw(self.start_m),
-            turn_rad: draw(self.turn_deg).to_radians(),
-            tread: 1.0 + draw(self.tread),
-            step_rate: 1.0 + draw(self.step_rate),
-            shove: (self.shove_m_s > 0.0).then(|| {
-                let change_m_s = rng.random_range(0.0..=self.shove_m_s);
-                let moment_s = [0.2, 0.6].map(|share| share * duration_s);
-                draw_shove(change_m_s, moment_s, limbs, rng)
-            }),
-            stairs: (self.stairs == StairsVariation::Drawn).then(|| StairsGenome::random(rng)),
-        }
-    }
-}
-
-/// Draws a shove of one of `limbs` limbs by `change_m_s`, in m/s, between two moments, in s. Its direction is backwards, to either side or
-/// upwards.
-pub fn draw_shove(
-    change_m_s: f32,
-    [first_s, last_s]: [f32; 2],
-    limbs: u32,
-    rng: &mut ChaCha8Rng,
-) -> Shove {
-    let directions = [Vector::NEG_Y, Vector::NEG_X, Vector::X, Vector::Z];
-    let at_s = rng.random_range(first_s..=last_s);
-    let limb = rng.random_range(0..limbs) as usize;
-    let direction = directions[rng.random_range(0..directions.len() as u32) as usize];
-    Shove { limb, at_s, change_m_s: direction * change_m_s }
-}
+use crate::schema::{check, is_default};
+use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Stairs, WorldPlan};
 
 /// The deviation of one trial from the nominal one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -157,6 +33,33 @@ pub struct Perturbation {
     /// Stairs that replace those of the trial; the factors apply to them, too. `None`: the stairs of the trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stairs: Option<StairsGenome>,
+    /// Factor on gravity.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub gravity: f32,
+    /// Least restitution of stairs and ground.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub bounce: f32,
+    /// Addition to the softness (CFM) of stairs and ground, in m/s per N.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub softness_m_s_per_n: f32,
+    /// Factor on the damping of the joints.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub joint_damping: f32,
+    /// Faults of the drives; `None` for none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drives: Option<DriveFaults>,
+    /// Pushes from the side; `None` for none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pushes: Option<SidePushes>,
+}
+
+/// Returns the factor that changes nothing.
+fn one() -> f32 {
+    1.0
+}
+
+fn is_one(factor: &f32) -> bool {
+    *factor == 1.0
 }
 
 /// The perturbation that changes nothing.
@@ -173,6 +76,12 @@ impl Default for Perturbation {
             step_rate: 1.0,
             shove: None,
             stairs: None,
+            gravity: 1.0,
+            bounce: 0.0,
+            softness_m_s_per_n: 0.0,
+            joint_damping: 1.0,
+            drives: None,
+            pushes: None,
         }
     }
 }
@@ -188,9 +97,17 @@ impl Perturbation {
             ("rise", self.rise),
             ("density", self.density),
             ("tread", self.tread),
+            ("gravity", self.gravity),
+            ("joint_damping", self.joint_damping),
         ] {
             within(field, factor, 0.0..=2.0)?;
         }
+        within("bounce", self.bounce, 0.0..=1.0)?;
+        within("softness_m_s_per_n", self.softness_m_s_per_n, 0.0..=1.0)?;
+        let drives = self.drives.map_or(Ok(()), |drives| drives.check());
+        drives.map_err(|error| error.inside("drives"))?;
+        let pushes = self.pushes.map_or(Ok(()), |pushes| pushes.check());
+        pushes.map_err(|error| error.inside("pushes"))?;
         within("step_rate", self.step_rate, 0.01..=100.0)?;
         within("ahead_m", self.ahead_m, -10.0..=10.0)?;
         within("aside_m", self.aside_m, -10.0..=10.0)?;
@@ -199,10 +116,17 @@ impl Perturbation {
         self.shove.map_or(Ok(()), |shove| shove.check().map_err(|error| error.inside("shove")))
     }
 
-    /// Applies the perturbation to a world, except for the shove.
+    /// Applies the perturbation to a world, except for shove, drives and pushes, which act during the trial.
     pub fn apply(&self, plan: &mut WorldPlan) {
-        plan.surface.friction *= self.friction;
-        plan.ground.friction *= self.friction;
+        for surface in [&mut plan.surface, &mut plan.ground] {
+            surface.friction *= self.friction;
+            surface.bounce = surface.bounce.max(self.bounce);
+            surface.soft_cfm_m_s_per_n += self.softness_m_s_per_n;
+        }
+        plan.physics.gravity_m_s2 *= self.gravity;
+        for joint in &mut plan.body.joints {
+            joint.damping_nms_per_rad *= self.joint_damping;
+        }
         if let Some(stairs) = &self.stairs {
             let Stairs { first_riser_y_m, landing_m, .. } = plan.stairs;
             plan.stairs = Stairs { first_riser_y_m, landing_m, ..stairs.stairs() };
@@ -228,41 +152,9 @@ mod tests {
     use crate::genome::GenomeSpace;
     use crate::rng::{Purpose, stream};
     use crate::schema::PerPart;
-    use crate::score::{Rollout, Trial};
+    use crate::score::{PerturbationRange, Rollout, StairsVariation, Trial};
+    use crate::world::Vector;
     use std::collections::BTreeSet;
-
-    #[test]
-    fn drawn_perturbations_fill_their_range_on_both_sides() {
-        let range = PerturbationRange {
-            density: 0.3,
-            tread: 0.1,
-            step_rate: 0.5,
-            shove_m_s: 2.0,
-            ..PerturbationRange::default()
-        };
-        let mut rng = stream(1, 0, 0, Purpose::Perturbation);
-        let drawn: Vec<Perturbation> = (0..1000).map(|_| range.draw(10.0, 5, &mut rng)).collect();
-        let span = |of: fn(&Perturbation) -> f32, least: f32, most: f32| {
-            let values = || drawn.iter().map(of);
-            assert!(values().all(|value| (least..=most).contains(&value)));
-            let width = values().fold(f32::MIN, f32::max) - values().fold(f32::MAX, f32::min);
-            assert!(width > (most - least) * 0.95, "{width} of {least} to {most}");
-        };
-        span(|p| p.friction, 0.8, 1.2);
-        span(|p| p.rise, 0.9, 1.1);
-        span(|p| p.density, 0.7, 1.3);
-        span(|p| p.ahead_m, -0.2, 0.2);
-        span(|p| p.aside_m, -0.2, 0.2);
-        span(|p| p.turn_rad, -5.0_f32.to_radians(), 5.0_f32.to_radians());
-        span(|p| p.tread, 0.9, 1.1);
-        span(|p| p.step_rate, 0.5, 1.5);
-        let shove = |p: &Perturbation| p.shove.expect("a shove in each");
-        span(|p| p.shove.map_or(0.0, |shove| shove.at_s), 2.0, 6.0);
-        span(|p| p.shove.map_or(0.0, |shove| shove.change_m_s.length()), 0.0, 2.0);
-        let limbs: BTreeSet<usize> = drawn.iter().map(|p| shove(p).limb).collect();
-        assert_eq!(limbs, BTreeSet::from([0, 1, 2, 3, 4]));
-        assert!(drawn.iter().all(|p| shove(p).change_m_s.y <= 0.0 && shove(p).change_m_s.z >= 0.0));
-    }
 
     #[test]
     fn a_perturbed_world_may_have_any_stairs() {

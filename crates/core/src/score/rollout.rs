@@ -10,6 +10,8 @@ use std::sync::Arc;
 use xxhash_rust::xxh3::Xxh3Default;
 
 use super::behaviour::{BehaviourMoment, BehaviourObserver};
+use super::ending::{Ending, Watch};
+use super::faults::{FaultyDrives, SidePushes};
 use super::fitness::FinalState;
 use super::trial::steps_in;
 use super::way_up::WayUp;
@@ -41,11 +43,17 @@ pub struct Rollout {
     change: Option<TrialChange>,
     /// Shove that is still to come; `None` without one.
     shove: Option<Shove>,
+    /// Pushes from the side in a perturbed trial.
+    pushes: Option<SidePushes>,
+    /// Drives that do not do what the controller commands, in a perturbed trial.
+    drives: Option<FaultyDrives>,
     frequency_hz: f32,
     observer: BehaviourObserver,
     furthest_y_m: f32,
     /// Progress of the body over the stairs, which is observed if the fitness depends on it.
     way: WayUp,
+    /// Observes how the trial ends.
+    watch: Watch,
     /// Scores of the last [`SCORED_S`], the earliest first.
     recent: VecDeque<f32>,
     trace: Xxh3Default,
@@ -65,6 +73,9 @@ impl Rollout {
         let mut plan = trial.world_plan(genome);
         perturbation.apply(&mut plan);
         let mut rollout = Self::in_world(genome, trial, plan);
+        rollout.pushes = perturbation.pushes;
+        let joints = rollout.body().joints.len();
+        rollout.drives = perturbation.drives.map(|faults| FaultyDrives::new(faults, joints));
         rollout.shove = perturbation.shove.map(|shove| {
             // The limb was drawn for the number of limbs of the trial. A body from the genome is shoved at the same share of its length.
             let (own, drawn_for) = (rollout.body().limbs(), trial.agent.limbs.max(1) as usize);
@@ -83,11 +94,14 @@ impl Rollout {
             control: ControlLoop::new(genome, &plan, trial.agent.senses),
             torques: vec![JointTorque::default(); plan.body.joints.len()],
             way: WayUp::begin(&plan.body, &poses, &plan.stairs),
+            watch: Watch::new(&plan.body, &plan.stairs, plan.physics.gravity_m_s2),
             poses,
             simulation,
             conditions: Arc::new(Conditions::of(trial, plan)),
             change: None,
             shove: None,
+            pushes: None,
+            drives: None,
             frequency_hz: genome.controller.frequency_hz(),
             observer: BehaviourObserver::default(),
             furthest_y_m: f32::MIN,
@@ -105,8 +119,7 @@ impl Rollout {
         if self.is_over() {
             return false;
         }
-        self.enter_step();
-        self.control.act(self.step, &self.simulation, &mut self.torques);
+        self.begin_step();
         self.take_step()
     }
 
@@ -114,8 +127,7 @@ impl Rollout {
     /// worlds must have the same [`Simulation::common`].
     pub(crate) fn advance_together(rollouts: &mut [&mut Self], lock_step: &mut LockStep) {
         for rollout in rollouts.iter_mut() {
-            rollout.enter_step();
-            rollout.control.act(rollout.step, &rollout.simulation, &mut rollout.torques);
+            rollout.begin_step();
         }
         let mut worlds: Vec<_> = rollouts
             .iter_mut()
@@ -145,7 +157,22 @@ impl Rollout {
         for (kept, torque) in self.torques.iter_mut().zip(torques) {
             *kept = *torque;
         }
+        self.distort_torques();
         self.take_step()
+    }
+
+    /// Applies what is due before this step, and computes the torques of the step.
+    fn begin_step(&mut self) {
+        self.enter_step();
+        self.control.act(self.step, &self.simulation, &mut self.torques);
+        self.distort_torques();
+    }
+
+    /// Replaces the commanded torques by those that arrive at the joints.
+    fn distort_torques(&mut self) {
+        if let Some(drives) = &mut self.drives {
+            drives.distort(&mut self.torques, &self.simulation.body().joints);
+        }
     }
 
     /// Applies changes and shoves that are due before this step.
@@ -154,6 +181,11 @@ impl Rollout {
         let now_s = self.time_s();
         if let Some(shove) = self.shove.take_if(|shove| shove.at_s <= now_s) {
             self.simulation.shove(&shove);
+        }
+        if let Some(pushes) = self.pushes {
+            let steps_per_s = self.conditions.world.physics.steps_per_s;
+            let push = pushes.due(self.step, steps_per_s, self.body().limbs());
+            push.into_iter().for_each(|push| self.simulation.shove(&push));
         }
     }
 
@@ -182,10 +214,12 @@ impl Rollout {
         }
         self.furthest_y_m = self.furthest_y_m.max(self.middle_m().y);
         self.observer.observe(&self.simulation, &self.conditions.world.stairs);
+        let now_s = self.time_s();
+        let flies = !self.simulation.parts().iter().any(|part| part.touch.any());
+        self.watch.observe(now_s, &self.poses, self.simulation.parts_on_stairs(), flies);
         if self.conditions.fitness == Fitness::Share {
-            let now_s = self.time_s();
             let stairs = &self.conditions.world.stairs;
-            self.way.observe(&self.simulation, &self.poses, stairs, now_s);
+            self.way.observe(self.simulation.body(), &self.poses, stairs, now_s);
         }
         self.remember_score();
         true
@@ -233,7 +267,13 @@ impl Rollout {
             steps: self.step,
             effort: Some(effort),
             behaviour: Some(behaviour),
+            ending: Some(self.ending()),
         }
+    }
+
+    /// Returns how the trial ended, if it ends now.
+    pub fn ending(&self) -> Ending {
+        self.watch.ending(self.disqualified, &self.poses)
     }
 
     /// Returns the fitness of the evaluation so far: by the trial's measure over the last half second, less the cost of energy.
@@ -259,6 +299,7 @@ impl Rollout {
             furthest_y_m: self.furthest_y_m,
             stairs: self.stairs(),
             way: &self.way,
+            touched_steps: self.watch.touched(),
         };
         state.score(self.conditions.fitness)
     }

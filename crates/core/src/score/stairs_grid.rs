@@ -114,7 +114,14 @@ mod tests {
 
     fn end(steps: u32, has_landed: bool) -> ExamEnd {
         let landed_s = has_landed.then_some(9.0);
-        ExamEnd { steps, way: 0.5, landed_s, arrived_s: None, has_landed, is_disqualified: false }
+        ExamEnd {
+            steps,
+            way: 0.5,
+            landed_s,
+            has_landed,
+            is_disqualified: false,
+            ..ExamEnd::CRASHED
+        }
     }
 
     #[test]

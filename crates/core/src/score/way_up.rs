@@ -1,6 +1,6 @@
 //! The share of the stairs that a body has climbed, for bodies of any length.
 
-use crate::world::{BodyPlan, Pose, Simulation, Stairs};
+use crate::world::{BodyPlan, Pose, Stairs};
 
 /// Time for which the whole body has to stay on the landing until it counts as arrived, in s.
 const ARRIVAL_S: f32 = 0.5;
@@ -12,8 +12,6 @@ const ARRIVAL_BONUS: f32 = 0.1;
 pub(super) struct WayUp {
     /// Distance of the body along the stairs at the start, in steps: see [`mean_steps`].
     start_steps: f32,
-    /// Whether a limb has touched each tread, the lowest first.
-    touched: Vec<bool>,
     arrival: Arrival,
 }
 
@@ -46,34 +44,17 @@ impl Arrival {
 impl WayUp {
     /// Begins with a body at its start.
     pub fn begin(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> Self {
-        Self {
-            start_steps: mean_steps(body, poses, stairs),
-            touched: vec![false; stairs.steps as usize],
-            ..Self::default()
-        }
+        Self { start_steps: mean_steps(body, poses, stairs), arrival: Arrival::default() }
     }
 
     /// Takes in the state after a healthy step, at this simulated time.
-    pub fn observe(
-        &mut self,
-        simulation: &Simulation,
-        poses: &[Pose],
-        stairs: &Stairs,
-        time_s: f32,
-    ) {
-        for limb in simulation.parts_on_stairs() {
-            let steps =
-                poses.get(limb).map_or(0, |pose| stairs.steps_under(pose.translation.to_array()));
-            let tread =
-                (steps as usize).checked_sub(1).and_then(|tread| self.touched.get_mut(tread));
-            tread.into_iter().for_each(|touched| *touched = true);
-        }
-        self.arrival.observe(mean_steps(simulation.body(), poses, stairs), stairs, time_s);
+    pub fn observe(&mut self, body: &BodyPlan, poses: &[Pose], stairs: &Stairs, time_s: f32) {
+        self.arrival.observe(mean_steps(body, poses, stairs), stairs, time_s);
     }
 
     /// Returns the share of the distance from the start to the landing. A body that has leapt over treads gets at most twice the share of
-    /// the treads that it has touched.
-    pub fn share(&self, steps: f32, stairs: &Stairs) -> f32 {
+    /// the `touched` treads.
+    pub fn share(&self, steps: f32, touched: u32, stairs: &Stairs) -> f32 {
         let all = stairs.steps as f32;
         let whole = all - self.start_steps;
         if whole <= 0.0 {
@@ -83,9 +64,8 @@ impl WayUp {
         if stairs.steps == 0 {
             return share;
         }
-        let touched = self.touched.iter().filter(|touched| **touched).count() as f32;
         // The distance before the first riser needs no touch.
-        let capped = (2.0 * touched).min(all);
+        let capped = (2.0 * touched as f32).min(all);
         share.min((capped - self.start_steps.min(0.0)) / (all - self.start_steps.min(0.0)))
     }
 
@@ -116,11 +96,12 @@ pub(super) fn mean_steps(body: &BodyPlan, poses: &[Pose], stairs: &Stairs) -> f3
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::world::{PartPlan, Rotation, Vector};
 
-    fn body(lengths_m: &[f32]) -> BodyPlan {
+    /// Returns a straight body of blocks of these lengths, in metres, without joints.
+    pub fn body(lengths_m: &[f32]) -> BodyPlan {
         let limb = |&length_m| PartPlan {
             limb: 0,
             width_m: 1.0,
@@ -164,14 +145,11 @@ mod tests {
     fn a_leap_over_untouched_steps_is_capped() {
         let stairs = Stairs::default();
         let both = body(&[1.0, 1.0]);
-        let mut way = WayUp::begin(&both, &poses(&[[0.0, -1.0, 0.5], [0.0, -3.0, 0.5]]), &stairs);
-        assert_eq!(way.share(way.start_steps, &stairs), 0.0, "nothing for staying");
-        way.touched = vec![true; 10];
-        assert_eq!(way.share(10.0, &stairs), 1.0);
-        way.touched = vec![false; 10];
-        way.touched[9] = true;
+        let way = WayUp::begin(&both, &poses(&[[0.0, -1.0, 0.5], [0.0, -3.0, 0.5]]), &stairs);
+        assert_eq!(way.share(way.start_steps, 0, &stairs), 0.0, "nothing for staying");
+        assert_eq!(way.share(10.0, 10, &stairs), 1.0);
         // Of the 12.5 treads from the start to the landing, 2.5 lie before the stairs. One touch counts for two steps.
-        assert!((way.share(10.0, &stairs) - 4.5 / 12.5).abs() < 1e-6);
+        assert!((way.share(10.0, 1, &stairs) - 4.5 / 12.5).abs() < 1e-6);
     }
 
     #[test]

@@ -116,6 +116,12 @@ impl PartPlan {
     pub fn mass_kg(&self) -> f32 {
         self.width_m * self.length_m * self.height_m * self.density_kg_m3
     }
+
+    /// Returns the moments of inertia of the part about its own axes, in kg·m².
+    pub fn inertia_kg_m2(&self) -> Vector {
+        let [w2, l2, h2] = self.size_m().map(|size_m| size_m * size_m);
+        Vector::new(l2 + h2, w2 + h2, w2 + l2) * (self.mass_kg() / 12.0)
+    }
 }
 
 impl BodyPlan {

@@ -1,7 +1,5 @@
 //! Energy balance of the snake: the work of its joints, its mechanical energy, and the energy lost.
 
-use rapier3d::prelude::*;
-
 /// Terms of the energy balance that accumulate from step to step. They never influence the simulation.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct EnergyBalance {
@@ -23,15 +21,6 @@ pub(super) struct EnergyBalance {
 const GAIN_SHARE: f32 = 0.05;
 /// Unexplained gain of energy that is tolerated in addition to `GAIN_SHARE`, in J, because contacts settle at the start.
 const GAIN_J: f32 = 1.0;
-
-/// Rotation and angular velocity of a limb before a step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct LimbTurn {
-    /// Rotation of the limb in the world.
-    pub rotation: Rotation,
-    /// Angular velocity of the limb in the world, in rad/s.
-    pub rate: Vector,
-}
 
 /// Mechanical energy that the snake has lost since the start.
 ///

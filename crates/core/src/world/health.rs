@@ -59,7 +59,7 @@ setting_group! {
         speed_m_s: f32 = 25.0,
             number("Speed limit", 1.0..=1000.0)
                 .unit("m/s")
-                .hint("A snake is disqualified if a limb is faster than this, which only an unstable simulation reaches")
+                .hint("A snake is disqualified if a block is faster than this, which only an unstable simulation reaches")
                 .slider(1.0, 100.0);
 
         /// Largest |x| of a limb's centre within the arena, in metres.
@@ -67,7 +67,7 @@ setting_group! {
             number("Sideways limit", 1.0..=1000.0).advanced()
                 .unit("m")
                 .hint(
-                    "A snake is disqualified if a limb is further from the middle of the stairs than this",
+                    "A snake is disqualified if a block is further from the middle of the stairs than this",
                 )
                 .slider(2.0, 50.0);
 
@@ -75,7 +75,7 @@ setting_group! {
         arena_back_m: f32 = 30.0,
             number("Backward limit", 1.0..=1000.0).advanced()
                 .unit("m")
-                .hint("A snake is disqualified if a limb is further than this behind the place where the distance (y) is 0")
+                .hint("A snake is disqualified if a block is further than this behind the place where the distance (y) is 0")
                 .slider(5.0, 100.0);
     }
 }

@@ -1,23 +1,25 @@
 //! The physical world: stairs, surface, snake, and one [`Simulation`] that steps them.
 //!
-//! Axes: x across the stairs, y towards and up the stairs, z up. Units: metres, kilograms, seconds, radians, newton metres. The world is
-//! built on rapier3d, with every body, collider and joint inserted in a fixed order. A second engine, *lanes*, computes several snakes side
-//! by side (`lanes/mod.rs` explains it). It keeps its state in rapier's bodies, so that code that reads a world works with both engines. This module never uses a window, a file, a thread, a clock, or iteration in hash order.
+//! Axes: x across the stairs, y towards and up the stairs, z up. Units: metres, kilograms, seconds, radians, newton metres. An
+//! engine moves the parts of the snake: rapier3d, or *lanes*, which computes several snakes side by side (`lanes/mod.rs` explains it). Each
+//! holds the state of the parts, which is all that other code reads (`engine.rs`). This module never uses a window, a file, a thread, a
+//! clock, or iteration in hash order.
 
 mod body;
-mod bounce;
 mod building_codes;
 mod contact;
 mod damping;
 mod discontinuity;
 mod effort;
 mod energy;
+mod engine;
 mod health;
 mod lanes;
 mod mount;
 mod physics;
 mod plan;
 mod pull;
+mod rapier;
 mod shove;
 mod simulation;
 mod soft_limb;
@@ -32,22 +34,24 @@ pub use building_codes::{BUILDING_CODES, BuildingCode, TRUE_MM_PER_M};
 pub use discontinuity::Discontinuity;
 pub use effort::Effort;
 pub use energy::EnergyLost;
+pub use engine::{PartState, Touch, TouchedSurface};
 pub use health::{Disqualification, HealthLimits};
-pub use lanes::{LanesCommon, VectorLevel};
+pub use lanes::{LANES, LanesCommon, VectorLevel};
 pub use mount::{Mount, joint_turn};
 #[cfg(test)]
 pub use physics::TESTED_RATES;
 pub use physics::{PhysicsEngine, PhysicsSettings, STEP_RATES_HZ};
 pub use plan::WorldPlan;
 pub use pull::Pull;
+pub use rapier::RapierWorld;
 pub use rapier3d::math::{Pose, Rotation, Vector};
 pub use rapier3d::pipeline::PhysicsWorld;
 pub use shove::Shove;
 pub use simulation::mirror::LimbState;
-pub use simulation::observe::{ContactForce, JointState};
-pub use simulation::patches::{ContactPatch, SurfaceDamping, TouchedSurface};
+pub use simulation::observe::{ContactForce, JointState, SeenPoint};
+pub use simulation::patches::{ContactPatch, SurfaceDamping};
 pub use simulation::sensing::{LimbReading, SnakeReading};
-pub use simulation::{LANES, LockStep, SeenPoint, Simulation};
+pub use simulation::{LockStep, Simulation};
 pub use soft_limb::{
     Elasticity, SOFTEST_M4_S2, STIFFEST_M4_S2, bending_m4_s2, check_softness, modulus_at_pa,
 };

@@ -1,5 +1,6 @@
 //! Branching bodies: where a joint holds its child on its parent, and how a branching body stands before its trial.
 
+use super::turning::product;
 use super::{BodyPlan, JointPlan, PartPlan, Pose, Rotation, Vector};
 
 /// Where a joint holds a part of a branching body. The child always begins at the joint with its front face, and extends
@@ -48,7 +49,7 @@ impl PartPlan {
 impl JointPlan {
     /// Returns the axes of the joint in a frame in which its parent has this rotation: the joint bends about x and twists about y.
     pub fn axes(&self, parent: Rotation) -> Rotation {
-        self.mount.map_or(parent, |mount| parent * mount.turn)
+        self.mount.map_or(parent, |mount| product(parent, mount.turn))
     }
 
     /// Returns the place of the joint on its parent, in metres from the parent's centre, for a parent of this length in metres.

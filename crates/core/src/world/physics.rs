@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use super::Vector;
 use crate::schema::{
     Section, SettingGroup, Walk, choice, choices, is_default, number, setting_group, settings,
     whole,
@@ -108,6 +109,11 @@ impl PhysicsSettings {
     pub(super) fn joint_damping_in_solver(&self) -> f32 {
         let substeps = self.substeps.max(1) as f32;
         substeps / (substeps + 1.0)
+    }
+
+    /// Returns the acceleration of free fall, in m/s².
+    pub fn gravity(&self) -> Vector {
+        Vector::new(0.0, 0.0, -self.gravity_m_s2)
     }
 
     /// Returns the length of one substep, in seconds.

@@ -1,8 +1,7 @@
 //! Pulling a part with the mouse: a damped spring between a point of the part and a point in space.
 
-use rapier3d::prelude::RigidBody;
-
 use super::Vector;
+use super::engine::PartState;
 
 /// A user's pull on a part of the snake. No trial contains pulls.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,14 +26,15 @@ const MAX_DAMPING_PER_STEP: f32 = 0.4;
 const MAX_STRETCH_M: f32 = 1.5;
 
 impl Pull {
-    /// Returns the force of the spring, in N, and the point on which it acts, in metres.
-    pub(super) fn force_on(&self, body: &RigidBody, step_s: f32) -> (Vector, Vector) {
-        let point = *body.position() * self.held_at_m;
+    /// Sets the force of the spring on a part of this mass, and adds its torque.
+    pub(super) fn act_on(&self, part: &mut PartState, mass_kg: f32, step_s: f32) {
+        let point = part.pose() * self.held_at_m;
         let stretch = (self.to_m - point).clamp_length_max(MAX_STRETCH_M);
-        let velocity = body.velocity_at_point(point);
+        let velocity = part.velocity_at(point);
         let damping_per_s =
             (2.0 * DAMPING_RATIO * FREQUENCY_RAD_S).min(MAX_DAMPING_PER_STEP / step_s);
         let acceleration = stretch * (FREQUENCY_RAD_S * FREQUENCY_RAD_S) - velocity * damping_per_s;
-        (acceleration * body.mass(), point)
+        part.force_n = acceleration * mass_kg;
+        part.torque_nm += (point - part.at).cross(part.force_n);
     }
 }

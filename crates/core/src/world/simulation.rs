@@ -2,16 +2,13 @@
 //!
 //! All code that scores, replays, shows or tests a snake calls [`Simulation::step`].
 
-use rapier3d::prelude::*;
+use std::any::Any;
+use std::borrow::Cow;
 
 mod balance;
-mod build;
-mod climb;
 mod continued;
 mod damping;
 mod health_check;
-mod lanes;
-mod lanes_patches;
 pub(super) mod mirror;
 pub(super) mod observe;
 pub(super) mod patches;
@@ -20,31 +17,28 @@ mod settle;
 mod shove;
 mod torques;
 
-use super::bounce::{LimbVelocity, finish_bounce};
-use super::contact::{ContactHooks, ContactLaws, soft_contacts};
 use super::damping::HalfStepDamping;
-use super::energy::{EnergyBalance, LimbTurn};
+use super::energy::EnergyBalance;
+use super::engine::{PartState, WorldEngine};
+use super::lanes::{LaneSolver, LanesWorld};
 use super::stair_profile::StairProfile;
 use super::torque::{AppliedTorque, JointTorque};
-use super::{BodyPlan, Disqualification, Effort, HealthLimits, PhysicsWorld, Pull, WorldPlan};
-use build::{insert_ground, insert_joints, insert_parts, insert_stairs};
-use lanes::LanesWorld;
-pub use lanes::{LANES, LockStep, SeenPoint};
+use super::{
+    BodyPlan, Disqualification, Effort, LANES, LanesCommon, PartPlan, PhysicsEngine, Pull,
+    RapierWorld, Vector, VectorLevel, WorldPlan,
+};
 
 /// A running world. A clone continues with the same bits as the original.
+#[derive(Clone)]
 pub struct Simulation {
-    physics: PhysicsWorld,
-    /// Whether something besides velocities and torques changed since the last step.
-    is_changed: bool,
-    contacts: ContactSettings,
+    engine: Box<dyn WorldEngine>,
+    plan: WorldPlan,
     profile: StairProfile,
     damping: HalfStepDamping,
     /// Share of the joints' damping that acts as an explicit torque, outside the solver.
     damping_as_torque: f32,
-    body: BodyPlan,
-    /// The engine's bodies of the parts, in the order of the plan's parts.
-    parts: Vec<RigidBodyHandle>,
-    health: HealthLimits,
+    /// Moments of inertia of each part about its own axes, in kg·m².
+    inertias_kg_m2: Vec<Vector>,
     arena_front_y_m: f32,
     /// Torque of the joints' drives on each part, in N·m.
     torques_in_world: Vec<Vector>,
@@ -58,64 +52,20 @@ pub struct Simulation {
     was_pulled: bool,
     /// Whether the user has ever pulled a part.
     is_disturbed: bool,
-    /// Forces on each part in another engine, if this world mirrors one; empty otherwise.
-    mirrored: Vec<Option<Vector>>,
-    /// The snake in the engine *lanes*, if *lanes* computes the motion. Rapier's bodies then hold the state, but rapier takes no steps.
-    lanes: Option<Box<LanesWorld>>,
-    /// Rotations and angular velocities of the limbs before the step. The memory is reused in each step.
-    turns_before: Vec<LimbTurn>,
-}
-
-/// Settings of the contacts that each step needs.
-#[derive(Debug, Clone)]
-struct ContactSettings {
-    laws: ContactLaws,
-    /// Whether any material has restitution.
-    bounces: bool,
-    ground: ColliderHandle,
-    substeps: u32,
-    snake_kg: f32,
+    /// The parts before the last step of the engine.
+    earlier: Vec<PartState>,
+    /// Angular velocities of the limbs at the beginning of the last step, on average over it, and at its end. The memory is reused.
+    rates: Vec<[Vector; 3]>,
 }
 
 impl Simulation {
-    /// Builds the world: the ground, the stairs from the lowest up, the parts from the head, and the joints and springs from the head.
-    ///
-    /// The order of insertion influences the bits of every run.
+    /// Builds the world of a plan, in the engine that the plan names.
     pub fn new(plan: &WorldPlan) -> Self {
-        let softness = soft_contacts(plan);
-        let laws = softness.laws;
-        let mut physics = PhysicsWorld {
-            gravity: Vector::new(0.0, 0.0, -plan.physics.gravity_m_s2),
-            integration_parameters: IntegrationParameters {
-                dt: plan.physics.step_s(),
-                num_solver_iterations: plan.physics.substeps as usize,
-                num_internal_pgs_iterations: plan.physics.iterations as usize,
-                ..Default::default()
-            },
-            ..Default::default()
-        };
-        softness.set_up(&mut physics.integration_parameters, &plan.physics);
-        let bounces = [plan.surface.bounce, plan.ground.bounce, plan.skin.bounce]
-            .iter()
-            .any(|&bounce| bounce > 0.0);
-        if bounces {
-            // Without recycling, contacts keep the mark that they are new. The bounce correction needs this mark.
-            physics.integration_parameters.contact_recycling = false;
-        }
-        let ground = insert_ground(&mut physics, plan, &laws);
-        insert_stairs(&mut physics, plan, &laws.stairs);
-        let parts = insert_parts(&mut physics, plan, &laws.limbs);
-        insert_joints(&mut physics, &parts, plan);
-
+        let parts = plan.body.parts.len();
         let mut simulation = Self {
-            physics,
-            is_changed: true,
-            contacts: ContactSettings {
-                laws,
-                bounces,
-                ground,
-                substeps: plan.physics.substeps,
-                snake_kg: plan.body.mass_kg(),
+            engine: match plan.physics.engine {
+                PhysicsEngine::Rapier => Box::new(RapierWorld::new(plan)),
+                PhysicsEngine::Lanes => Box::new(LanesWorld::new(plan)),
             },
             profile: StairProfile::of(&plan.stairs),
             damping: HalfStepDamping::of_rates(
@@ -125,21 +75,19 @@ impl Simulation {
                 plan.physics.step_s(),
             ),
             damping_as_torque: 1.0 - plan.physics.joint_damping_in_solver(),
-            torques_in_world: vec![Vector::ZERO; parts.len()],
-            damping_in_world: vec![Vector::ZERO; parts.len()],
+            inertias_kg_m2: plan.body.parts.iter().map(PartPlan::inertia_kg_m2).collect(),
+            arena_front_y_m: plan.stairs.end_y_m() + 10.0,
+            torques_in_world: vec![Vector::ZERO; parts],
+            damping_in_world: vec![Vector::ZERO; parts],
             applied: vec![AppliedTorque::default(); plan.body.joints.len()],
             effort: Effort::default(),
             balance: EnergyBalance::default(),
             pull: None,
             was_pulled: false,
             is_disturbed: false,
-            mirrored: Vec::new(),
-            lanes: LanesWorld::of(plan),
-            turns_before: Vec::with_capacity(parts.len()),
-            parts,
-            body: plan.body.clone(),
-            health: plan.health.clone(),
-            arena_front_y_m: plan.stairs.end_y_m() + 10.0,
+            earlier: Vec::with_capacity(parts),
+            rates: Vec::with_capacity(parts),
+            plan: plan.clone(),
         };
         simulation.begin_balance();
         simulation
@@ -180,7 +128,7 @@ impl Simulation {
 
     /// Returns the built body: its parts, joints, springs, sizes, masses and limits.
     pub fn body(&self) -> &BodyPlan {
-        &self.body
+        &self.plan.body
     }
 
     /// Returns the effort of the healthy steps so far.
@@ -190,63 +138,58 @@ impl Simulation {
 
     /// Advances the engine by one step, and then slows the limbs by the damping of air and surfaces.
     pub(crate) fn advance(&mut self) {
-        self.read_turns();
-        if self.lanes.is_some() {
-            self.advance_alone();
-        } else {
-            self.advance_rapier();
-        }
+        self.keep_parts();
+        self.engine.step();
+        self.finish_step();
+    }
+
+    /// Keeps the state of the parts before a step of the engine.
+    fn keep_parts(&mut self) {
+        self.earlier.clear();
+        self.earlier.extend_from_slice(self.engine.parts());
+    }
+
+    /// Completes a step of the engine: the energy balance, bounces and the damping of its second half.
+    fn finish_step(&mut self) {
+        self.add_to_balance();
+        self.engine.bounce(&self.earlier);
         self.dampen_half_step();
     }
 
-    fn advance_rapier(&mut self) {
-        let ContactSettings { laws, ground, substeps, snake_kg, .. } = &self.contacts;
-        let hooks = ContactHooks {
-            laws,
-            ground: *ground,
-            step_s: self.physics.integration_parameters.dt,
-            substeps: *substeps,
-            snake_kg: *snake_kg,
-        };
-        if self.is_changed {
-            mark_all_bodies(&mut self.physics.bodies);
-        } else {
-            unmark_all_bodies(&mut self.physics.bodies);
-        }
-        self.is_changed = false;
-        if !self.contacts.bounces {
-            self.physics.step_with_events(&hooks, &());
-            self.add_to_balance();
-        } else {
-            let velocity = |&limb: &RigidBodyHandle| {
-                let body = &self.physics.bodies[limb];
-                LimbVelocity { linear: body.linvel(), angular: body.angvel() }
-            };
-            let before: Vec<LimbVelocity> = self.parts.iter().map(velocity).collect();
-            self.physics.step_with_events(&hooks, &());
-            self.add_to_balance();
-            for (&limb, before) in self.parts.iter().zip(before) {
-                finish_bounce(&mut self.physics, limb, before);
-            }
+    /// Applies torques and advances a world of rapier by one step of rapier alone, for benchmarks: without the laws of contacts that rapier
+    /// does not know, and without energy balance and checks. Worlds of other engines stay as they are.
+    pub fn step_bare(&mut self, torques: &[JointTorque]) {
+        self.apply(torques);
+        let engine: &mut dyn Any = &mut *self.engine;
+        if let Some(rapier) = engine.downcast_mut::<RapierWorld>() {
+            rapier.step_bare();
+            self.dampen_half_step();
         }
     }
 
-    /// Gives read access to the engine's state, for debug drawing, picking and benchmarks.
-    pub fn physics(&self) -> &PhysicsWorld {
-        &self.physics
+    /// Returns the state of the parts, in the order of the plan's parts.
+    pub fn parts(&self) -> &[PartState] {
+        self.engine.parts()
     }
 
-    /// Returns the engine's bodies of the parts, in the order of the plan's parts. The ground can be another body, which is not among
-    /// them.
-    pub fn parts(&self) -> &[RigidBodyHandle] {
-        &self.parts
-    }
-
-    /// Gives write access to the engine's state, for benchmarks that step rapier alone. From then on the energy balance is meaningless.
-    pub fn physics_mut(&mut self) -> &mut PhysicsWorld {
+    /// Changes the state of each part, given its index. From then on the energy balance is meaningless.
+    pub fn change_parts(&mut self, change: impl FnMut((usize, &mut PartState))) {
         self.balance.has_unknown_work = true;
-        self.is_changed = true;
-        &mut self.physics
+        self.engine.parts_mut().iter_mut().enumerate().for_each(change);
+    }
+
+    /// Returns the world in the form of rapier, for debug drawing and picking: itself in worlds of rapier, and otherwise a world of the
+    /// same plan with its parts at the start.
+    pub fn in_rapier(&self) -> Cow<'_, RapierWorld> {
+        match self.rapier() {
+            Some(rapier) => Cow::Borrowed(rapier),
+            None => Cow::Owned(RapierWorld::new(&self.plan)),
+        }
+    }
+
+    fn rapier(&self) -> Option<&RapierWorld> {
+        let engine: &dyn Any = &*self.engine;
+        engine.downcast_ref()
     }
 
     /// Sets or ends the user's pull on a part, from the next step on. A pulled snake no longer runs its trial, and only a state that is
@@ -262,72 +205,60 @@ impl Simulation {
     }
 
     fn apply_pull(&mut self) {
-        for &limb in &self.parts {
-            self.physics.bodies[limb].reset_forces(false);
+        for part in self.engine.parts_mut() {
+            part.force_n = Vector::ZERO;
         }
         self.was_pulled = false;
         let Some(pull) = self.pull else { return };
-        let Some(&part) = self.parts.get(pull.part) else { return };
-        let step_s = self.physics.integration_parameters.dt;
-        let body = &mut self.physics.bodies[part];
-        let (force, point) = pull.force_on(body, step_s);
-        body.add_force_at_point(force, point, false);
+        let Some(part) = self.engine.parts_mut().get_mut(pull.part) else { return };
+        pull.act_on(part, self.plan.body.parts[pull.part].mass_kg(), self.plan.physics.step_s());
         self.was_pulled = true;
         self.balance.has_unknown_work = true;
     }
+
+    /// Returns the settings and sizes that all worlds of a lock step must have in common; `None` if the engine takes each step alone.
+    pub(crate) fn common(&self) -> Option<LanesCommon> {
+        LanesWorld::common_of(&*self.engine)
+    }
 }
 
-/// Marks all bodies as changed, so that the engine's next step takes account of every change in them.
-fn mark_all_bodies(bodies: &mut RigidBodySet) {
-    bodies.iter_mut().for_each(drop);
+/// Steps several worlds of the engine *lanes* side by side.
+pub struct LockStep {
+    solver: LaneSolver<LANES>,
 }
 
-/// Clears the engine's list of changed bodies. Torques and velocities take effect without a mark. With it, the engine would assemble the
-/// joints anew in each step, with the same bits as a result.
-fn unmark_all_bodies(bodies: &mut RigidBodySet) {
-    // The iterator clears the list of changed bodies, and lists each body that it yields.
-    drop(bodies.iter_mut());
+impl Default for LockStep {
+    fn default() -> Self {
+        Self::at(VectorLevel::in_use())
+    }
 }
 
-impl Clone for Simulation {
-    fn clone(&self) -> Self {
-        let physics = &self.physics;
-        Self {
-            physics: PhysicsWorld {
-                gravity: physics.gravity,
-                integration_parameters: physics.integration_parameters,
-                // The pipeline holds working memory only; a new pipeline gives the same bits.
-                physics_pipeline: PhysicsPipeline::new(),
-                islands: physics.islands.clone(),
-                broad_phase: physics.broad_phase.clone(),
-                narrow_phase: physics.narrow_phase.clone(),
-                bodies: physics.bodies.clone(),
-                colliders: physics.colliders.clone(),
-                impulse_joints: physics.impulse_joints.clone(),
-                multibody_joints: physics.multibody_joints.clone(),
-                ccd_solver: physics.ccd_solver.clone(),
-            },
-            is_changed: self.is_changed,
-            contacts: self.contacts.clone(),
-            profile: self.profile.clone(),
-            body: self.body.clone(),
-            parts: self.parts.clone(),
-            health: self.health.clone(),
-            arena_front_y_m: self.arena_front_y_m,
-            damping: self.damping,
-            damping_as_torque: self.damping_as_torque,
-            torques_in_world: self.torques_in_world.clone(),
-            damping_in_world: self.damping_in_world.clone(),
-            applied: self.applied.clone(),
-            effort: self.effort,
-            balance: self.balance,
-            pull: self.pull,
-            was_pulled: self.was_pulled,
-            is_disturbed: self.is_disturbed,
-            mirrored: self.mirrored.clone(),
-            lanes: self.lanes.clone(),
-            turns_before: Vec::with_capacity(self.parts.len()),
+impl LockStep {
+    /// Makes a lock step that computes with these vector instructions. They change no bit.
+    pub fn at(level: VectorLevel) -> Self {
+        Self { solver: LaneSolver::at(level) }
+    }
+
+    /// Advances up to [`LANES`] worlds by one step each, with the same bits and ends as [`Simulation::step`]. All worlds must have the same
+    /// [`Simulation::common`].
+    pub fn step(
+        &mut self,
+        worlds: &mut [(&mut Simulation, &[JointTorque])],
+    ) -> [Result<(), Disqualification>; LANES] {
+        debug_assert!(worlds.len() <= LANES, "more worlds than lanes");
+        let mut chains = [const { None }; LANES];
+        for (chain, (world, torques)) in chains.iter_mut().zip(worlds.iter_mut()) {
+            world.apply(torques);
+            world.keep_parts();
+            *chain = LanesWorld::chain_of(&mut *world.engine);
         }
+        self.solver.advance(&mut chains);
+        let mut ends = [Ok(()); LANES];
+        for (end, (world, _)) in ends.iter_mut().zip(worlds.iter_mut()) {
+            world.finish_step();
+            *end = world.take_in_step();
+        }
+        ends
     }
 }
 

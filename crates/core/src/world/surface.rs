@@ -12,7 +12,7 @@ setting_group! {
             number("Friction", 0.0..=1000.0)
                 .hint(
                     "Coefficient of friction: largest force along the surface per force onto it. 0 slides freely, 1 grips \
-                     well, 5 is like glue",
+                     like rubber, 5 hardly slips at all",
                 )
                 .slider(0.0, 10.0)
                 .logarithmic_from(0.01);
@@ -55,7 +55,7 @@ setting_group! {
             // The range ends at 10 m/s per N, at which a limb's own weight is too much for the surface's hold.
             number("Creep (slip)", 0.0..=10.0).advanced()
                 .unit("m/s per N")
-                .hint("How fast a limb creeps under a force that friction would otherwise hold, as on oil")
+                .hint("How fast a block creeps under a force that friction would otherwise hold, as on oil")
                 .slider(0.0, 1.0)
                 .logarithmic_from(1.0e-4);
 
@@ -65,7 +65,7 @@ setting_group! {
             // The range ends at 20 1/s, at which a limb that moves at 10 m/s comes to rest within its own length.
             number("Damping", 0.0..=20.0).advanced()
                 .unit("1/s")
-                .hint("Rate at which a limb loses speed while it touches the surface, as in mud")
+                .hint("Rate at which a block loses speed while it touches the surface, as in mud")
                 .slider(0.0, 20.0);
     }
 }

@@ -1,8 +1,7 @@
-//! Rotations that have the same bits on every processor, for the engine *lanes*, whose results are the same everywhere.
+//! Rotations that have the same bits on every processor, for all that is computed around an engine's step.
 //!
-//! glam, on which rapier is built, multiplies rotations with the vector instructions of each kind of processor. The order in which it adds
-//! the parts of a product therefore differs between processors. These functions always add the parts in glam's order on x86-64, one number
-//! at a time.
+//! glam, on which rapier is built, multiplies rotations with the vector instructions of each kind of processor. On x86-64 and 64-bit ARM it
+//! adds the parts of a product in one order, and these functions add them in this order everywhere, one number at a time.
 
 use super::{Rotation, Vector};
 
@@ -32,7 +31,7 @@ mod tests {
     use rand::RngExt;
 
     #[test]
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     fn on_this_processor_they_have_the_bits_of_glam() {
         let mut rng = stream(1, 1, 1, Purpose::Birth);
         let mut number = || rng.random_range(-1.0_f32..1.0);

@@ -65,7 +65,7 @@ impl ExportFormat {
             Self::Csv => FormatInfo {
                 ending: "csv",
                 title: "Table as text",
-                sentence: "Motion, forces and senses of every limb in every step, for spreadsheets and scripts.",
+                sentence: "Motion, forces and senses of every block in every step, for spreadsheets and scripts.",
                 most_champions: 100,
                 most_generations: 1000,
             },

@@ -3,6 +3,7 @@
 //! The page is one file: its script, its style, the core as WebAssembly, and the data. It makes no network requests. Names from
 //! files appear only as text: in the data as JSON without `<`, in the markup with every special character escaped.
 
+mod base85;
 mod data;
 mod drawing;
 mod markup;
@@ -66,7 +67,7 @@ fn parts(source: &ExportSource, data: &PageData) -> [(&'static str, String); 12]
         ("facts", markup::facts(source, &data.champions)),
         ("run", source.run.as_ref().map(run_report::of).unwrap_or_default()),
         ("data", json),
-        ("core", STANDARD.encode(CORE)),
+        ("core", base85::encoded(CORE)),
         ("script", script),
     ]
 }

@@ -83,6 +83,13 @@ impl<T: Send + 'static> BackgroundTask<T> {
         }
     }
 
+    /// Returns the result as [`Self::poll`] does, and removes the task when its result is there.
+    pub fn take_result(task: &mut Option<Self>) -> Option<Result<T, String>> {
+        let result = task.as_ref()?.poll()?;
+        *task = None;
+        Some(result)
+    }
+
     /// Blocks until the work ends, and returns its result.
     ///
     /// # Errors

@@ -173,9 +173,7 @@ fn step_bare(genome: &Genome, trial: &Trial) -> Simulation {
     let mut torques = vec![JointTorque::default(); simulation.body().joints.len()];
     for step in 0..trial.steps() {
         control.act(step, &simulation, &mut torques);
-        simulation.apply(&torques);
-        simulation.physics_mut().step();
-        simulation.dampen_half_step();
+        simulation.step_bare(&torques);
     }
     simulation
 }

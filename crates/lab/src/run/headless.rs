@@ -13,8 +13,11 @@ use super::report::GenerationReport;
 use super::run_control::{Cancelled, RunControl};
 pub use super::terminal::say;
 use super::terminal::write_line;
-use snakes_core::evolve::{Champion, RunPlan, Rung, SettingChange, SpeciesCount, StairsCount};
+use snakes_core::evolve::{
+    BandCount, Champion, RunPlan, Rung, SettingChange, SpeciesCount, StairsCount,
+};
 use snakes_core::save::SaveError;
+use snakes_core::score::EndingKind;
 
 /// Errors of commands without a window.
 #[derive(Debug, thiserror::Error)]
@@ -271,6 +274,10 @@ fn report_json(report: &GenerationReport, first_landing: Option<u64>, bodies_var
         let (list, number) = if bodies_vary { ("bodies", "blocks") } else { ("species", "id") };
         let of = |species: &SpeciesCount| json!({number: species.id, "size": species.size, "best": species.best.map(short)});
         line[list] = report.species.iter().map(of).collect();
+    }
+    if !report.endings.is_empty() {
+        let of = |count: &BandCount<EndingKind>| json!({"ending": count.id, "size": count.size, "best": count.best.map(short)});
+        line["endings"] = report.endings.iter().map(of).collect();
     }
     if let Some(Rung { rise_m, successes }) = report.rung {
         line["rung"] = json!({"rise_m": short(rise_m), "successes": successes});

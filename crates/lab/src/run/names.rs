@@ -34,7 +34,7 @@ pub const PRESET_TITLES: [(&str, &[(&str, &str)]); 6] = [
         "Stairs",
         &[
             ("ladder", "Steps that grow"),
-            ("mixed-stairs", "Many stairs, limbs with neurons"),
+            ("mixed-stairs", "Many stairs, blocks with neurons"),
             ("generalist", "Any stairs"),
             ("poet", "Stairs that evolve, too (POET)"),
         ],
@@ -44,7 +44,7 @@ pub const PRESET_TITLES: [(&str, &[(&str, &str)]); 6] = [
         "Brains",
         &[
             ("senses", "Reflexes"),
-            ("limb-neurons", "Neurons in the limbs"),
+            ("limb-neurons", "Neurons in the blocks"),
             ("neat", "Networks that grow (NEAT)"),
             ("q-learning", "Trial and error (Q-learning)"),
             ("xcs", "Rules by accuracy (XCS)"),

@@ -11,7 +11,8 @@ use super::panics::caught;
 use snakes_core::Engine;
 use snakes_core::evolve::Champion;
 use snakes_core::save::{LoadedChampion, load_champion};
-use snakes_core::score::{Evaluation, evaluate};
+use snakes_core::schema::Choices;
+use snakes_core::score::{Ending, Evaluation, evaluate};
 use snakes_core::world::{Effort, HealthLimits};
 
 /// Re-simulates a saved champion and compares it with its record, bit for bit.
@@ -25,6 +26,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     let found = simulated(path, &loaded)?;
     let matches = found.agrees_with(&recorded);
     let meaning = trial.result_in_words(&loaded.champion.genome, &found);
+    let ending = found.ending.unwrap_or(Ending::CRASHED);
     if json {
         let line = json!({
             "type": "replay",
@@ -41,6 +43,9 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
             "sideways_m": found.effort.map(|effort| short(effort.sideways_m)),
             "disqualified": found.disqualified.map(|reason| reason.words()),
             "meaning": meaning,
+            "ending": ending.kind.choice().name,
+            "ending_step": ending.step,
+            "tricks": ending.used().map(|trick| trick.choice().name).collect::<Vec<_>>(),
             "engine": loaded.engine.version,
             "processors": loaded.engine.processors,
             "matches": matches,
@@ -49,6 +54,7 @@ pub fn replay(path: &Path, json: bool, out: &mut dyn Write) -> Result<(), Headle
     } else {
         let unit = loaded.champion.trial.fitness.unit();
         writeln!(out, "fitness     {:.6}{unit}, {meaning}", found.fitness)?;
+        writeln!(out, "ended       {}", ending.words())?;
         if let Some(reason) = found.disqualified {
             let words = reason.words();
             writeln!(out, "disqualified after {} steps: {words}", found.steps)?;

@@ -10,10 +10,10 @@ use xxhash_rust::xxh3::Xxh3Default;
 use super::evaluated_generation::EvaluatedGeneration;
 use crate::statistics::Quartiles;
 use snakes_core::evolve::{
-    Champion, GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount, StairsTree,
-    Statistics,
+    BandCount, Champion, GenerationRecord, MOST_SPECIES_RECORDED, Rung, SpeciesCount, StairsCount,
+    StairsTree, Statistics,
 };
-use snakes_core::score::{Evaluation, Trial};
+use snakes_core::score::{EndingKind, Evaluation, Trial};
 use snakes_core::world::Disqualification;
 
 /// Report of one generation: its record, which is available by dereferencing, and data that the log does not keep.
@@ -79,6 +79,7 @@ impl GenerationReport {
             statistics: statistics(evaluations),
             chosen_by: champion.as_ref().and_then(|of| of.chosen_by).map(f64::from),
             species: species(&evaluated.species(), evaluations),
+            endings: endings(evaluations),
             rung,
             stairs: None,
             hash: generation_hash(evaluations),
@@ -148,20 +149,18 @@ fn reasons(evaluations: &[Evaluation]) -> BTreeMap<Disqualification, u32> {
 
 /// Counts the largest species of a generation. `numbers` has the species of each individual.
 fn species(numbers: &[u32], evaluations: &[Evaluation]) -> Vec<SpeciesCount> {
-    let mut counts: BTreeMap<u32, SpeciesCount> = BTreeMap::new();
-    for (&id, evaluation) in numbers.iter().zip(evaluations) {
-        let count = counts.entry(id).or_insert(SpeciesCount { id, size: 0, best: None });
-        count.size += 1;
-        if evaluation.disqualified.is_none() {
-            let fitness = evaluation.fitness;
-            count.best = Some(count.best.map_or(fitness, |best| best.max(fitness)));
-        }
-    }
-    let mut species: Vec<SpeciesCount> = counts.into_values().collect();
+    let mut species = SpeciesCount::of(numbers.iter().copied(), evaluations);
     species.sort_by_key(|count| (Reverse(count.size), count.id));
     species.truncate(MOST_SPECIES_RECORDED);
     species.sort_by_key(|count| count.id);
     species
+}
+
+/// Counts the ways in which the trials of a generation ended; empty if a trial has no ending, because its evaluation is of an earlier version.
+fn endings(evaluations: &[Evaluation]) -> Vec<BandCount<EndingKind>> {
+    let kinds = evaluations.iter().map(|evaluation| Some(evaluation.ending?.kind));
+    let kinds: Option<Vec<EndingKind>> = kinds.collect();
+    BandCount::of(kinds.unwrap_or_default(), evaluations)
 }
 
 /// Computes statistics over the healthy individuals, summed in a fixed order; `None` if all were disqualified.

@@ -4,10 +4,10 @@ use super::evaluator::Evaluator;
 use super::exam::exam_ends;
 use super::run_control::{Cancelled, RunControl};
 use snakes_core::evolve::Champion;
-use snakes_core::score::{PerturbationRange, varied};
+use snakes_core::score::{Endings, PerturbationRange, varied};
 
 /// Results of a champion in perturbed trials.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Robustness {
     /// Number of trials.
     pub trials: u32,
@@ -15,6 +15,8 @@ pub struct Robustness {
     pub disqualified: u32,
     /// Number of trials that ended at least one step high, at least two steps high, and so on.
     pub reached: Vec<u32>,
+    /// How the trials ended.
+    pub endings: Endings,
 }
 
 /// Simulates a champion in `trials` perturbed trials, which are drawn from `seed`.
@@ -38,6 +40,7 @@ pub fn robustness(
         trials,
         disqualified: ends.iter().filter(|end| end.is_disqualified).count() as u32,
         reached: (1..=trial.stairs.steps).map(reached).collect(),
+        endings: Endings::of(ends.iter().map(|end| &end.ending)),
     })
 }
 
@@ -46,6 +49,7 @@ mod tests {
     use super::*;
     use crate::run::LocalPool;
     use snakes_core::save::shipped_champion;
+    use snakes_core::score::EndingKind;
 
     #[test]
     fn only_perturbed_trials_differ_from_the_record() {
@@ -65,6 +69,7 @@ mod tests {
         };
         let still = measured(&none, 1);
         assert_eq!((still.disqualified, still.reached[0], still.reached[9]), (0, 12, 12));
+        assert_eq!(still.endings.count(EndingKind::Landed), 12);
         let shaken = measured(&PerturbationRange::default(), 1);
         assert_eq!(shaken, measured(&PerturbationRange::default(), 3), "for any number of threads");
         assert_ne!(shaken, still);

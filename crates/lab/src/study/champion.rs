@@ -8,6 +8,7 @@ use snakes_core::evolve::{Champion, Descriptor};
 use snakes_core::genome::controllers::{DECISIONS_PER_S, Policy};
 use snakes_core::genome::{ControllerGenes, joint_tree};
 use snakes_core::save::StudyValue;
+use snakes_core::schema::Choices;
 use snakes_core::score::Rollout;
 
 /// Number of the most used rules whose share of all decisions is measured.
@@ -30,6 +31,9 @@ pub(super) fn champion_values(champion: Option<&Champion>) -> BTreeMap<String, S
     add("fitness", short(evaluation.fitness));
     add("steps_climbed", StudyValue::Number(champion.steps_climbed().into()));
     add("landed", flag(evaluation.is_on_landing(&trial.stairs)));
+    if let Some(ending) = evaluation.ending {
+        add("ending", StudyValue::Text(ending.kind.choice().name.to_owned()));
+    }
     add("way_m", short(champion.way_m()));
     add("blocks", StudyValue::Number(champion.body().limbs() as f64));
     let energy = Descriptor::EnergyPerMetre.value(evaluation, trial.middle_start_y_m(genome));

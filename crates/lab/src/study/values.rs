@@ -46,7 +46,7 @@ use Form::{Flag, List, Number, Text, Until};
 /// Name, title, unit, digits, form and description of a value.
 type ValueRow = (&'static str, &'static str, &'static str, usize, Form, &'static str);
 
-const ROWS: [ValueRow; 26] = [
+const ROWS: [ValueRow; 27] = [
     (
         "evaluations",
         "evaluations",
@@ -143,6 +143,7 @@ const ROWS: [ValueRow; 26] = [
         Number,
         "Waves that the champion uses for a tenth of its decisions or more.",
     ),
+    ("ending", "endings", "", 0, Text, "How the champion's own trial ended."),
     (
         "tree",
         "trees of joints",

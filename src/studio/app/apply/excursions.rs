@@ -68,23 +68,17 @@ fn effect(command: &Command, from: &StageMode, shown: Option<&StageMode>, way: &
     }
 }
 
-/// Returns whether a command may begin an excursion, so that the scene before it has to be copied.
-fn may_begin(command: &Command) -> bool {
-    use Command::{Machines, Notify, Player, Quit, Run, Share, View};
-    !matches!(command, Run(_) | Player(_) | View(_) | Share(_) | Machines(_) | Notify(_) | Quit)
-}
-
 impl StageParams<'_, '_> {
-    /// Returns the scene before a command, if the command may begin an excursion. The lanes are copied only when it does.
-    pub(super) fn scene(&self, command: &Command, camera: &CameraRig) -> Option<LeftScene> {
-        may_begin(command).then(|| LeftScene {
+    /// Returns the scene before a command. The lanes are copied only when the command begins an excursion.
+    pub(super) fn scene(&self, camera: &CameraRig) -> LeftScene {
+        LeftScene {
             mode: self.mode.clone(),
             lanes: Vec::new(),
             playback: self.playback.clone(),
             camera: camera.clone(),
             selected: (self.selection.lane, self.selection.limb),
             following: self.following.clone(),
-        })
+        }
     }
 
     /// Sends what a command shows to the stage, or brings back an earlier scene if the command ends an excursion. `left`
@@ -93,7 +87,7 @@ impl StageParams<'_, '_> {
     pub(super) fn finish(
         &mut self,
         command: &Command,
-        left: Option<LeftScene>,
+        left: LeftScene,
         (before, after): ([bool; 2], [bool; 2]),
         camera: &mut CameraRig,
     ) -> bool {
@@ -114,13 +108,11 @@ impl StageParams<'_, '_> {
         match effect {
             Effect::None => {}
             Effect::Enter(excursion) => {
-                if let Some(left) = left {
-                    let lanes = &self.lanes;
-                    self.way_back.enter(excursion, || {
-                        let lanes = lanes.iter().map(|(_, lane)| lane.kept()).collect();
-                        LeftScene { lanes, ..left }
-                    });
-                }
+                let lanes = &self.lanes;
+                self.way_back.enter(excursion, || {
+                    let lanes = lanes.iter().map(|(_, lane)| lane.kept()).collect();
+                    LeftScene { lanes, ..left }
+                });
             }
             Effect::Leave(excursion) => {
                 if let Some(scene) = self.way_back.leave(excursion) {

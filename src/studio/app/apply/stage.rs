@@ -68,9 +68,8 @@ impl StageParams<'_, '_> {
 
     /// Returns the champions on the stage, in the order of their lanes.
     fn champions(&self) -> Vec<StagedChampion> {
-        let mut lanes: Vec<&Lane> = self.all_lanes().collect();
-        lanes.sort_by_key(|lane| lane.number);
-        lanes.into_iter().map(|lane| lane.staged.clone()).collect()
+        let lanes = self.lanes.iter().sort_by_key::<&Lane, _>(|lane| lane.number);
+        lanes.map(|(_, lane)| lane.staged.clone()).collect()
     }
 
     /// Returns a request for what is on the stage.
@@ -92,6 +91,16 @@ impl StageParams<'_, '_> {
     pub fn selected(&self) -> Option<StagedChampion> {
         let nearness = |lane: &&Lane| (lane.number != self.selection.lane, lane.number);
         self.all_lanes().min_by_key(nearness).map(|lane| lane.staged.clone())
+    }
+
+    /// Returns the champion of which a race shows variations: that of the selected lane, or the best of a generation. In a
+    /// what-if, this is the selected copy, with its change from the start.
+    fn varied(&self) -> Option<StagedChampion> {
+        match *self.mode {
+            StageMode::Solo | StageMode::Race => self.selected(),
+            StageMode::WhatIf { .. } => Some(self.selected()?.shown_from_start()),
+            StageMode::Generation { .. } => self.champions().into_iter().next(),
+        }
     }
 
     /// Shows other champions from their start until the user chooses again. A pause command later in the same frame
@@ -225,12 +234,8 @@ impl StageParams<'_, '_> {
                 let stage = ChangedStage { show: &self.to_change(), moment: None };
                 stage.current().map(|champion| sweep(champion, field)).transpose()?
             }
-            StageCommand::RaceStairs => {
-                self.to_change().champions.first().map(stairs_race).transpose()?
-            }
-            StageCommand::RaceKnockOuts => {
-                self.to_change().champions.first().map(knock_outs).transpose()?
-            }
+            StageCommand::RaceStairs => self.varied().as_ref().map(stairs_race).transpose()?,
+            StageCommand::RaceKnockOuts => self.varied().as_ref().map(knock_outs).transpose()?,
             StageCommand::RaceGenerations => Some(Show::race(all_generations(run)?)),
             StageCommand::RaceLeaders(generation) => Some(Show::race(leaders(run, *generation)?)),
             _ => None,

@@ -3,10 +3,8 @@
 mod excursions;
 
 use super::*;
-use crate::studio::commands::BlockSize;
-use crate::studio::commands::StageCommand;
 use crate::studio::commands::pick::Pick;
-use crate::studio::commands::screenshot_area::ScreenshotArea;
+use crate::studio::commands::{BlockSize, ScreenshotArea, StageCommand};
 use crate::studio::scene::camera::rig::CameraRig;
 use crate::studio::scene::overlays::Overlays;
 use crate::studio::scene::quality::StageQuality;
@@ -21,7 +19,6 @@ use crate::studio::state::following::Following;
 use crate::studio::state::turns::Turns;
 use crate::studio::ui::theme::Theme;
 use snakes_core::evolve::RunPlan;
-use snakes_core::save::library::SavePlace;
 use snakes_core::save::shipped_champion;
 
 /// Creates an app that executes commands, with an empty stage.
@@ -197,20 +194,6 @@ fn pausing_in_the_frame_of_a_new_show_pauses_that_show() {
     assert!(!app.world().resource::<Playback>().is_playing, "and paused");
 }
 
-#[test]
-fn a_save_is_shown_and_a_missing_one_is_reported() {
-    let mut app = app();
-    let gone = SavePlace::Champion("nowhere.ron".into());
-    for place in [SavePlace::Shipped("fast"), gone] {
-        app.world_mut().write_message(Command::Library(LibraryCommand::Replay(place)));
-    }
-    (0..2).for_each(|_| app.update());
-    let shown: Vec<Show> = app.world_mut().resource_mut::<Messages<Show>>().drain().collect();
-    assert_eq!(shown.len(), 1);
-    assert_eq!(shown[0].champions[0].name(), "fast");
-    assert_eq!(app.world().resource::<Notices>().len(), 1, "the other is not there");
-}
-
 /// Puts champions on the stage, side by side, and executes a command. Returns the last request that it sends to the stage.
 fn show_after(app: &mut App, show: Show, command: Command) -> Option<Show> {
     let old: Vec<Entity> =
@@ -237,19 +220,43 @@ fn a_new_run_names_the_change_that_was_tried_and_takes_it() {
 }
 
 #[test]
-fn a_sweep_in_a_what_if_is_around_the_value_that_the_slider_shows() {
-    let mut app = app();
-    let what_if = show_after(&mut app, Show::solo(climber(0)), set("0.05")).expect("a what-if");
-    let sweep = Command::Stage(StageCommand::Sweep("trial.surface.friction".to_owned()));
-    let race = show_after(&mut app, what_if, sweep).expect("five lanes");
-    assert_eq!(friction_after(&mut app, &[]), 0.05);
-    let labels: Vec<&str> = race.champions.iter().map(StagedChampion::label).collect();
-    let before = "friction 0.05 (as before)";
-    assert_eq!(
-        labels,
-        ["friction 0.01", "friction 0.025", before, "friction 0.1", "friction 0.25"]
-    );
-    assert!(race.champions.iter().all(|lane| lane.changes_at_step().is_none()), "from the start");
+fn in_a_what_if_races_vary_the_selected_copy_and_sweeps_the_one_of_the_sliders() {
+    let race = |command: &StageCommand, lane: usize| {
+        let mut app = app();
+        app.world_mut().resource_mut::<Playback>().hold_at(5.0);
+        let what_if = show_after(&mut app, Show::solo(climber(0)), set("0.05")).expect("a what-if");
+        assert_eq!(what_if.champions[1].changes_at_step(), Some(300));
+        app.world_mut().resource_mut::<Selection>().lane = lane;
+        let race = show_after(&mut app, what_if, Command::Stage(command.clone())).expect("a race");
+        assert!(race.champions.iter().all(|lane| lane.changes_at_step().is_none()));
+        race.champions
+    };
+    for command in [StageCommand::RaceStairs, StageCommand::RaceKnockOuts] {
+        for (lane, friction) in [(0, 1.0), (1, 0.05)] {
+            let race = race(&command, lane);
+            assert!(race.len() > 2, "{command:?}");
+            assert!(race.iter().all(|of| of.trial().surface.friction == friction), "{command:?}");
+        }
+    }
+    for lane in [0, 1] {
+        let sweep = race(&StageCommand::Sweep("trial.surface.friction".to_owned()), lane);
+        let labels: Vec<&str> = sweep.iter().map(StagedChampion::label).collect();
+        let before = "friction 0.05 (as before)";
+        assert_eq!(
+            labels,
+            ["friction 0.01", "friction 0.025", before, "friction 0.1", "friction 0.25"]
+        );
+    }
+}
+
+#[test]
+fn a_change_after_the_landing_is_tried_from_the_start() {
+    for (held_s, changes_at_step) in [(5.0, Some(300)), (14.5, None)] {
+        let mut app = app();
+        app.world_mut().resource_mut::<Playback>().hold_at(held_s);
+        let what_if = show_after(&mut app, Show::solo(climber(0)), set("0.05")).expect("a what-if");
+        assert_eq!(what_if.champions[1].changes_at_step(), changes_at_step, "{held_s} s");
+    }
 }
 
 #[test]

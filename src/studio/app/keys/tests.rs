@@ -44,18 +44,6 @@ fn pressed(name: &str) -> (Key, Held) {
 }
 
 #[test]
-fn a7_at_the_end_of_a_run_its_key_begins_no_other() {
-    let finished = Situation { is_finished: true, ..Situation::default() };
-    let sent = command(&character("e"), NONE, finished);
-    assert!(matches!(sent, Some(Command::Notify(_))), "{sent:?}");
-}
-
-#[test]
-fn a14_the_key_for_a_new_run_begins_one() {
-    assert_eq!(calm("n", CONTROL), Some(Command::Run(RunCommand::New)));
-}
-
-#[test]
 fn every_shortcut_triggers_its_action() {
     let situation =
         Situation { can_leave: true, can_undo: true, can_redo: true, ..Situation::default() };
@@ -69,7 +57,7 @@ fn every_shortcut_triggers_its_action() {
 }
 
 #[test]
-fn the_command_of_a_key_depends_on_the_situation() {
+fn a7_the_command_of_a_key_depends_on_the_situation() {
     let calm = Situation::default();
     let can_leave = Situation { can_leave: true, ..calm };
     let is_what_if = Situation { is_what_if: true, ..calm };
@@ -86,6 +74,9 @@ fn the_command_of_a_key_depends_on_the_situation() {
     ] {
         assert_eq!(command(&key, NONE, now), expected, "{key:?} in {now:?}");
     }
+    let is_finished = Situation { is_finished: true, ..calm };
+    let sent = command(&character("e"), NONE, is_finished);
+    assert!(matches!(sent, Some(Command::Notify(_))), "it begins no other run: {sent:?}");
 }
 
 #[test]
@@ -113,20 +104,14 @@ fn a_clicker_leads_through_a_presentation_and_any_other_key_ends_it() {
 }
 
 #[test]
-fn unused_keys_do_nothing() {
+fn a14_unused_keys_do_nothing_and_the_key_for_a_new_run_begins_one() {
     for text in ["q", "x", "*"] {
         assert_eq!(calm(text, NONE), None, "{text}");
     }
     assert_eq!(calm("r", CONTROL), None, "control and R");
     assert_eq!(calm("Q", CONTROL), Some(Command::Quit), "large letters");
+    assert_eq!(calm("n", CONTROL), Some(Command::Run(RunCommand::New)));
     assert_eq!(calm("R", SHIFT), Some(Command::Player(PlayerCommand::Restart)));
-}
-
-#[test]
-fn a_text_field_keeps_its_editing_keys() {
-    assert!(!CONTROL.is_command(&character("z")));
-    assert!(CONTROL.is_command(&character("k")));
-    assert!(!NONE.is_command(&character("k")));
 }
 
 #[test]

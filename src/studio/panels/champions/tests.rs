@@ -35,10 +35,10 @@ pub(in crate::studio::panels) fn assert_no_texts_overlap<S>(
 /// Creates the panel with these champions. Two snakes can race in each generation.
 fn panel<'a>(opening: &'a [(String, LoadedChampion)], reports: &'a [GenerationReport]) -> Sent<'a> {
     let mut panel = ChampionsPanel::default();
-    testing::panel([360.0, 400.0], move |ui, commands| {
-        let shown = &[ShownLane { champion: ShownChampion::Opening(0), lane: None }];
+    testing::panel([360.0, 400.0], move |ui| {
+        let shown = &[ShownLane { champion: Pick::Opened(0), lane: None }];
         let view = ChampionsView { opening, reports, shown, leaders: &|_| 2, follows: None };
-        panel.ui(ui, &view, commands);
+        panel.ui(ui, &view);
     })
 }
 

@@ -126,7 +126,7 @@ fn note_on_start(ancestry: &Ancestry, founder: Option<&str>) -> String {
             format!("The line starts in generation {generation} with a random snake.")
         }
         (Parents::Distribution, _) => {
-            "CMA-ES draws each snake around the average of the best, so no snake has parents. Genetic algorithm, under How it learns, has them."
+            "In CMA-ES each snake varies around the average of the best, so no snake has parents. Genetic algorithm, under Method of evolution, has them."
                 .to_owned()
         }
         (Parents::One(_) | Parents::Two(..) | Parents::Unknown, _) => {

@@ -1,7 +1,10 @@
-//! The kinds of bands: species of networks, and numbers of blocks in evolving bodies.
+//! The kinds of bands: species of networks, numbers of blocks in evolving bodies, and ways in which trials ended.
 
-use super::bands::Bands;
+use super::bands::{Bands, BestNumbers};
+use snakes_core::evolve::BandCount;
 use snakes_core::genome::ControllerGenes;
+use snakes_core::schema::Choices;
+use snakes_core::score::EndingKind;
 
 /// Texts of the chart of species by generation.
 pub(super) const SPECIES: &Bands = &Bands {
@@ -12,20 +15,24 @@ pub(super) const SPECIES: &Bands = &Bands {
     count: |count| format!("{count} species"),
     rest: "smaller species",
     column: "species",
-    best: "Best network",
-    best_axis: "Links and hidden nodes",
-    best_names: ["links of the best network", "its hidden nodes"],
-    best_columns: ["links of the best network", "hidden nodes of the best network"],
-    best_of: |report| {
-        let ControllerGenes::Grown(genes) = &report.champion.as_ref()?.genome.controller else {
-            return None;
-        };
-        Some([genes.network.enabled_links() as f64, genes.network.hidden().len() as f64])
-    },
-    best_words: |[links, hidden]| {
-        let nodes = if hidden == 1.0 { "node" } else { "nodes" };
-        format!("{links} links\n{hidden} hidden {nodes}")
-    },
+    counts: |report| report.species.clone(),
+    is_named: false,
+    best: Some(BestNumbers {
+        name: "Best network",
+        axis: "Links and hidden nodes",
+        names: ["links of the best network", "its hidden nodes"],
+        columns: ["links of the best network", "hidden nodes of the best network"],
+        of: |report| {
+            let ControllerGenes::Grown(genes) = &report.champion.as_ref()?.genome.controller else {
+                return None;
+            };
+            Some([genes.network.enabled_links() as f64, genes.network.hidden().len() as f64])
+        },
+        words: |[links, hidden]| {
+            let nodes = if hidden == 1.0 { "node" } else { "nodes" };
+            format!("{links} links\n{hidden} hidden {nodes}")
+        },
+    }),
 };
 
 /// Texts of the chart of the numbers of blocks by generation.
@@ -40,15 +47,58 @@ pub(super) const BLOCKS: &Bands = &Bands {
     },
     rest: "others",
     column: "blocks",
-    best: "Best body",
-    best_axis: "Blocks, and length in m",
-    best_names: ["blocks of the best body", "its length in m"],
-    best_columns: ["blocks of the best body", "length of the best body (m)"],
-    best_of: |report| {
-        let body = report.champion.as_ref()?.body();
-        Some([body.limbs() as f64, f64::from(body.length_m())])
+    counts: |report| report.species.clone(),
+    is_named: false,
+    best: Some(BestNumbers {
+        name: "Best body",
+        axis: "Blocks, and length in m",
+        names: ["blocks of the best body", "its length in m"],
+        columns: ["blocks of the best body", "length of the best body (m)"],
+        of: |report| {
+            let body = report.champion.as_ref()?.body();
+            Some([body.limbs() as f64, f64::from(body.length_m())])
+        },
+        words: |[blocks, length_m]| format!("{blocks} blocks\n{length_m:.1} m long"),
+    }),
+};
+
+/// Ways in which a trial can end, from the bottom of the chart to the top, with the number of the band. Its last digit determines the colour:
+/// a landing is green.
+const ENDINGS_DRAWN: [(EndingKind, u32); EndingKind::OPTIONS.len()] = [
+    (EndingKind::Landed, 2),
+    (EndingKind::OutOfTime, 5),
+    (EndingKind::Stuck, 8),
+    (EndingKind::FellBack, 14),
+    (EndingKind::OffTheSide, 17),
+    (EndingKind::Beside, 19),
+    (EndingKind::LeftTheGround, 20),
+    (EndingKind::Disqualified, 23),
+];
+
+/// Texts of the chart of the ways in which the trials of each generation ended.
+pub(super) const ENDINGS: &Bands = &Bands {
+    title: "How each generation ended",
+    name: "Endings",
+    note: "Each band is a way in which trials end; its height is the share of the snakes whose trial ended so.",
+    band: |number| {
+        let drawn = ENDINGS_DRAWN.iter().find(|(_, of)| *of == number);
+        drawn.map_or(String::new(), |(kind, _)| kind.choice().title.to_owned())
     },
-    best_words: |[blocks, length_m]| format!("{blocks} blocks\n{length_m:.1} m long"),
+    count: |count| match count {
+        1 => "one ending".to_owned(),
+        _ => format!("{count} different endings"),
+    },
+    rest: "others",
+    column: "ending",
+    counts: |report| {
+        let of = |(kind, id): &(EndingKind, u32)| {
+            let BandCount { size, best, .. } = report.endings.iter().find(|of| of.id == *kind)?;
+            Some(BandCount { id: *id, size: *size, best: *best })
+        };
+        ENDINGS_DRAWN.iter().filter_map(of).collect()
+    },
+    is_named: true,
+    best: None,
 };
 
 #[cfg(test)]
@@ -78,6 +128,25 @@ mod tests {
         assert!(
             best.starts_with(&format!("Best body of generation 1\n{blocks} blocks\n")),
             "{best}"
+        );
+    }
+
+    #[test]
+    fn every_snake_of_a_generation_is_in_the_band_of_its_ending() {
+        let run = bodies_run();
+        let view = view(ENDINGS, run.settings(), run.reports());
+        for report in run.reports() {
+            let all: u32 = (ENDINGS.counts)(report).iter().map(|band| band.size).sum();
+            assert_eq!(all, report.evaluations, "{:?}", report.endings);
+        }
+        let bands = view.figure.charts[0].series.iter();
+        assert!(bands.clone().all(|series| !series.name.is_empty()));
+        let listed = view.figure.listed();
+        assert!(bands.clone().all(|band| listed.iter().any(|series| series.name == band.name)));
+        assert_eq!(view.figure.charts.len(), 1);
+        assert_eq!(view.figure.table()[0][..3], ["generation", "ending", "snakes"]);
+        assert!(
+            EndingKind::OPTIONS.iter().all(|kind| ENDINGS_DRAWN.iter().any(|(of, _)| of == kind))
         );
     }
 }

@@ -30,18 +30,42 @@ pub(super) struct Bands {
     pub rest: &'static str,
     /// Heading of the column for the bands in the table.
     pub column: &'static str,
-    /// Name of the second chart, of two numbers of the best snake of each generation.
-    pub best: &'static str,
-    /// Name of the second chart's vertical axis.
-    pub best_axis: &'static str,
+    /// Returns the bands of a generation, in ascending order of their numbers.
+    pub counts: fn(&GenerationReport) -> Vec<SpeciesCount>,
+    /// Whether a band shows its name and is in the legend, instead of showing its number, and is as high as its share of the generation
+    /// instead of its number of snakes.
+    pub is_named: bool,
+    /// Chart of two numbers of the best snake, below the bands.
+    pub best: Option<BestNumbers>,
+}
+
+/// Texts of a chart of two numbers of the best snake of each generation.
+pub(super) struct BestNumbers {
+    /// Name of the chart.
+    pub name: &'static str,
+    /// Name of the vertical axis.
+    pub axis: &'static str,
     /// Names of the two numbers.
-    pub best_names: [&'static str; 2],
+    pub names: [&'static str; 2],
     /// Headings of the columns for the two numbers in the table.
-    pub best_columns: [&'static str; 2],
+    pub columns: [&'static str; 2],
     /// Returns the two numbers of a generation; `None` without a best snake.
-    pub best_of: fn(&GenerationReport) -> Option<[f64; 2]>,
+    pub of: fn(&GenerationReport) -> Option<[f64; 2]>,
     /// Describes the two numbers, in one line for each.
-    pub best_words: fn([f64; 2]) -> String,
+    pub words: fn([f64; 2]) -> String,
+}
+
+impl Bands {
+    /// Returns the height in the chart of one snake of a generation.
+    fn height(&self, report: &GenerationReport) -> f64 {
+        if self.is_named { 100.0 / f64::from(report.evaluations.max(1)) } else { 1.0 }
+    }
+}
+
+/// A generation with its bands.
+struct Banded<'a> {
+    report: &'a GenerationReport,
+    counts: Vec<SpeciesCount>,
 }
 
 /// Creates the chart of the finished generations. It is empty if no generation has recorded bands.
@@ -50,42 +74,51 @@ pub(super) fn view(
     settings: &Settings,
     reports: &[GenerationReport],
 ) -> ChartView {
-    let known: Vec<&GenerationReport> =
-        reports.iter().filter(|report| !report.species.is_empty()).collect();
+    let banded = |report| Banded { report, counts: (bands.counts)(report) };
+    let known: Vec<Banded<'_>> =
+        reports.iter().map(banded).filter(|banded| !banded.counts.is_empty()).collect();
     let Some(latest) = known.last() else {
         return ChartView::new(Figure::of_several(bands.title, Vec::new()), Vec::new());
     };
     let every = known.len().div_ceil(MAX_DRAWN).max(1);
     // The steps are chosen so that the latest generation is always drawn.
     let skipped = (known.len() - 1) % every;
-    let drawn: Vec<&GenerationReport> =
-        known.iter().skip(skipped).step_by(every).copied().collect();
+    let drawn: Vec<&Banded<'_>> = known.iter().skip(skipped).step_by(every).collect();
     let mut lives = Lives::new();
-    for report in &known {
-        for species in &report.species {
+    for Banded { report, counts } in &known {
+        for species in counts {
             lives.entry(species.id).or_insert([report.generation; 2])[1] = report.generation;
         }
     }
     let x = axis_of_finished(reports.len());
-    let most = known.iter().map(|report| report.evaluations).max().unwrap_or(1);
-    let y = Axis::count("Snakes", 0.0..=f64::from(most));
+    let most = known.iter().map(|banded| banded.report.evaluations).max().unwrap_or(1);
+    let y = match bands.is_named {
+        true => Axis::count("Share of the snakes, %", 0.0..=100.0),
+        false => Axis::count("Snakes", 0.0..=f64::from(most)),
+    };
     let stack = Chart::new(x.clone(), y, layers(bands, &drawn, &lives)).named(bands.name);
     let unit = settings.trial.fitness.unit();
-    let of_report = |report: &&GenerationReport| hits(bands, report, &lives, unit, every as f64);
-    let hits = drawn.iter().flat_map(of_report).collect();
-    let (best, points) = best_numbers(bands, &known, x);
+    let of_report = |banded: &&Banded<'_>| hits(bands, banded, &lives, unit, every as f64);
+    let (mut charts, mut all_hits) =
+        (vec![stack], vec![drawn.iter().flat_map(of_report).collect()]);
+    if let Some(best) = &bands.best {
+        let (chart, points) = best_numbers(best, &known, x);
+        charts.push(chart);
+        all_hits.push(points);
+    }
     let (now, ever) = (count_in_words(bands, latest), lives.len());
     let note = format!(
         "{} Generation {}: {now}. Recorded since the start: {ever}.",
-        bands.note, latest.generation
+        bands.note, latest.report.generation
     );
     let best_fitness = with_unit("best fitness", unit);
     let heads = ["generation", bands.column, "snakes", &best_fitness];
-    let figure = Figure::of_several(bands.title, vec![stack, best]).with_note(note).with_numbers(
-        heads.into_iter().chain(bands.best_columns),
-        known.iter().flat_map(|report| records(bands, report)),
+    let of_best = bands.best.iter().flat_map(|best| best.columns);
+    let figure = Figure::of_several(bands.title, charts).with_note(note).with_numbers(
+        heads.into_iter().chain(of_best),
+        known.iter().flat_map(|banded| records(bands, banded)),
     );
-    ChartView::new(figure, vec![hits, points])
+    ChartView::new(figure, all_hits)
 }
 
 /// First and last generation of each band, by the band's number.
@@ -101,28 +134,31 @@ fn place(species: &[SpeciesCount], id: u32) -> [u32; 2] {
 
 /// Creates a layer for each band. It begins in the generation before the band's first one and ends in that after the
 /// last one, with height zero.
-fn layers(bands: &Bands, drawn: &[&GenerationReport], lives: &Lives) -> Vec<Series> {
+fn layers(bands: &Bands, drawn: &[&Banded<'_>], lives: &Lives) -> Vec<Series> {
     let layer = |(&id, &[first, last]): (&u32, &[u32; 2])| {
-        let from = drawn.partition_point(|report| report.generation < first);
-        let to = drawn.partition_point(|report| report.generation <= last);
+        let from = drawn.partition_point(|banded| banded.report.generation < first);
+        let to = drawn.partition_point(|banded| banded.report.generation <= last);
         // The band exists only between two drawn generations.
         if from == to {
             return None;
         }
         let seen = drawn.get(from.saturating_sub(1)..(to + 1).min(drawn.len()))?;
-        let ends = seen.iter().flat_map(|report| {
-            let [low, size] = place(&report.species, id).map(f64::from);
+        let ends = seen.iter().flat_map(|Banded { report, counts }| {
+            let [low, size] = place(counts, id).map(|of| f64::from(of) * bands.height(report));
             let x = f64::from(report.generation);
             [x - LEVEL, x + LEVEL].map(|x| [x, low, low + size])
         });
-        Some(Series::new("", Role::Species(id), Shape::Layer(ends.collect())))
+        let name = if bands.is_named { (bands.band)(id) } else { String::new() };
+        Some(Series::new(&name, Role::Species(id), Shape::Layer(ends.collect())))
     };
     let species = lives.iter().filter_map(layer);
     // The log contains only the largest bands of a generation.
-    let rest = drawn.iter().flat_map(|report| {
-        let low = report.species.iter().map(|count| count.size).sum::<u32>();
+    let rest = drawn.iter().flat_map(|Banded { report, counts }| {
+        let low = counts.iter().map(|count| count.size).sum::<u32>();
         let x = f64::from(report.generation);
-        [x - LEVEL, x + LEVEL].map(|x| [x, f64::from(low), f64::from(report.evaluations.max(low))])
+        let ends =
+            [low, report.evaluations.max(low)].map(|of| f64::from(of) * bands.height(report));
+        [x - LEVEL, x + LEVEL].map(|x| [x, ends[0], ends[1]])
     });
     let rest: Vec<[f64; 3]> = rest.collect();
     let has_rest = rest.iter().any(|[_, low, high]| high > low);
@@ -133,18 +169,18 @@ fn layers(bands: &Bands, drawn: &[&GenerationReport], lives: &Lives) -> Vec<Seri
 /// Returns the hover targets of the bands in a generation, which is drawn `width` generations wide.
 fn hits(
     bands: &'static Bands,
-    report: &GenerationReport,
+    banded: &Banded<'_>,
     lives: &Lives,
     unit: &'static str,
     width: f64,
 ) -> Vec<ChartHit> {
-    let (generation, evaluations) = (report.generation, report.evaluations);
-    let count = count_in_words(bands, report);
+    let (generation, evaluations) = (banded.report.generation, banded.report.evaluations);
+    let count = count_in_words(bands, banded);
     let x = f64::from(generation);
     let hit = |species: &SpeciesCount| {
         let SpeciesCount { id, size, best } = *species;
-        let [low, _] = place(&report.species, id).map(f64::from);
-        let area = [x - width / 2.0, x + width / 2.0, low, low + f64::from(size)];
+        let ends = place(&banded.counts, id).map(|of| f64::from(of) * bands.height(banded.report));
+        let area = [x - width / 2.0, x + width / 2.0, ends[0], ends[0] + ends[1]];
         let first = lives.get(&id).map_or(generation, |life| life[0]);
         let (band, count) = ((bands.band)(id), count.clone());
         let words = move || {
@@ -159,13 +195,13 @@ fn hits(
         };
         ChartHit::new(HitShape::Area(area), words)
     };
-    report.species.iter().map(hit).collect()
+    banded.counts.iter().map(hit).collect()
 }
 
 /// Describes the number of bands in a generation. If only the largest are recorded, there are more.
-fn count_in_words(bands: &Bands, report: &GenerationReport) -> String {
-    let recorded: u32 = report.species.iter().map(|species| species.size).sum();
-    let count = (bands.count)(report.species.len());
+fn count_in_words(bands: &Bands, Banded { report, counts }: &Banded<'_>) -> String {
+    let recorded: u32 = counts.iter().map(|species| species.size).sum();
+    let count = (bands.count)(counts.len());
     match report.evaluations.saturating_sub(recorded) {
         0 => count,
         _ => format!("more than {count}"),
@@ -174,12 +210,13 @@ fn count_in_words(bands: &Bands, report: &GenerationReport) -> String {
 
 /// Creates the chart of two numbers of the best snake of each generation.
 fn best_numbers(
-    bands: &'static Bands,
-    reports: &[&GenerationReport],
+    best: &'static BestNumbers,
+    generations: &[Banded<'_>],
     x: Axis,
 ) -> (Chart, Vec<ChartHit>) {
+    let numbers = |Banded { report, .. }: &Banded<'_>| (best.of)(report);
     let known: Vec<(&GenerationReport, [f64; 2])> =
-        reports.iter().filter_map(|report| Some((*report, (bands.best_of)(report)?))).collect();
+        generations.iter().filter_map(|banded| Some((banded.report, numbers(banded)?))).collect();
     let along = |index: usize| {
         let point = |(report, numbers): &(&GenerationReport, [f64; 2])| {
             [f64::from(report.generation), numbers[index]]
@@ -190,36 +227,37 @@ fn best_numbers(
     let hit = |(report, numbers): &(&GenerationReport, [f64; 2])| {
         let (generation, numbers) = (report.generation, *numbers);
         let individual = report.champion.as_ref()?.origin.individual;
-        let words = move || {
-            let Bands { best, best_words, .. } = bands;
-            format!("{best} of generation {generation}\n{}", best_words(numbers))
-        };
+        let words =
+            move || format!("{} of generation {generation}\n{}", best.name, (best.words)(numbers));
         let target = HitShape::Column([f64::from(generation), numbers[0]]);
         let place = IndividualId { generation, individual };
         Some(ChartHit::of(target, words, Pick::Generation(generation), place))
     };
     let hits = known.iter().filter_map(hit).collect();
-    let [first, second] = bands.best_names;
+    let [first, second] = best.names;
     let series = vec![
         Series::new(first, Role::First, along(0)),
         Series::new(second, Role::Second, along(1)),
     ];
-    let y = Axis::count(bands.best_axis, -most * 0.06..=most * 1.12);
-    (Chart::new(x, y, series).named(bands.best), hits)
+    let y = Axis::count(best.axis, -most * 0.06..=most * 1.12);
+    (Chart::new(x, y, series).named(best.name), hits)
 }
 
 /// Returns the rows of the table for a generation, one for each band.
-fn records(bands: &Bands, report: &GenerationReport) -> Vec<Vec<String>> {
-    let numbers = (bands.best_of)(report);
-    let [first, second] =
-        [0, 1].map(|i| numbers.map_or(String::new(), |numbers| numbers[i].to_string()));
+fn records(bands: &Bands, Banded { report, counts }: &Banded<'_>) -> Vec<Vec<String>> {
+    let of_best = bands.best.iter().flat_map(|best| {
+        let numbers = (best.of)(report);
+        [0, 1].map(|i| numbers.map_or(String::new(), |numbers| numbers[i].to_string()))
+    });
+    let of_best: Vec<String> = of_best.collect();
     let generation = report.generation.to_string();
     let row = |species: &SpeciesCount| {
         let best = species.best.map_or(String::new(), |best| best.to_string());
-        let (id, size) = (species.id.to_string(), species.size.to_string());
-        vec![generation.clone(), id, size, best, first.clone(), second.clone()]
+        let id = if bands.is_named { (bands.band)(species.id) } else { species.id.to_string() };
+        let all = [generation.clone(), id, species.size.to_string(), best];
+        all.into_iter().chain(of_best.iter().cloned()).collect()
     };
-    report.species.iter().map(row).collect()
+    counts.iter().map(row).collect()
 }
 
 #[cfg(test)]

@@ -3,8 +3,9 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape, generation_and_snake, place_of};
+use super::view::{ChartHit, ChartView, HitShape, generation_and_snake};
 use crate::studio::commands::pick::Pick;
+use crate::studio::panels::shown::place_of;
 use snakes_core::evolve::{IndividualId, Settings};
 use snakes_core::genome::{BodyChange, Genome};
 use snakes_core::world::BodyPlan;

@@ -1,54 +1,30 @@
 //! The kinds of charts: their names, and their texts while they are empty.
 
+use crate::studio::commands::hinted::hinted_values;
 use snakes_core::evolve::StrategyKind;
 
-/// A kind of chart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) enum ChartKind {
-    #[default]
-    Fitness,
-    Spread,
-    Species,
-    Blocks,
-    Bodies,
-    Stairs,
-    Ancestors,
-    Torques,
-    Parents,
-    Front,
-    Archive,
-    Runs,
-    Methods,
+hinted_values! {
+    /// A kind of chart, in the order of the buttons. Its name is the label of its button.
+    #[derive(Default)]
+    pub enum ChartKind {
+        #[default]
+        Fitness = "Fitness", "Best, mean and median fitness of each generation";
+        Spread = "Spread", "Distribution of the fitness in the latest generation";
+        Endings = "Endings", "How the trials of each generation ended: landed, fell off the side, stuck and so on";
+        Species = "Species", "Snakes in each species of networks (NEAT)";
+        Blocks = "Blocks", "Snakes with each number of blocks, where bodies evolve";
+        Bodies = "Bodies", "Ancestry of the best body, a picture at every change of its structure";
+        Stairs = "Stairs", "Tree of the stairs that evolve, and transfers of snakes between them (POET)";
+        Ancestors = "Ancestors", "Ancestors of the best snake";
+        Torques = "Torques",
+            "Joint torques of the snake on the stage and of its parent; of several, of the selected one";
+        Parents = "Parents", "Gene values of the parents of the next generation";
+        Front = "Effort", "Best trade-offs between distance and energy";
+        Archive = "Kinds", "Best snake for each kind of behaviour (MAP-Elites)";
+        Runs = "Runs", "Compare this run with other runs";
+        Methods = "Compare methods", "Compare search methods over many runs";
+    }
 }
-
-/// All kinds of charts, in the order of their buttons, with the label of the button and its tooltip.
-pub(super) const CHART_KINDS: [(ChartKind, &str, &str); 13] = [
-    (ChartKind::Fitness, "Fitness", "Best, mean and median fitness of each generation"),
-    (ChartKind::Spread, "Spread", "Distribution of the fitness in the latest generation"),
-    (ChartKind::Species, "Species", "Snakes in each species of networks (NEAT)"),
-    (ChartKind::Blocks, "Blocks", "Snakes with each number of blocks, where bodies evolve"),
-    (
-        ChartKind::Bodies,
-        "Bodies",
-        "Ancestry of the best body, a picture at every change of its structure",
-    ),
-    (
-        ChartKind::Stairs,
-        "Stairs",
-        "Tree of the stairs that evolve, and transfers of snakes between them (POET)",
-    ),
-    (ChartKind::Ancestors, "Ancestors", "Ancestors of the best snake"),
-    (
-        ChartKind::Torques,
-        "Torques",
-        "Joint torques of the snake on the stage and of its parent; of several, of the selected one",
-    ),
-    (ChartKind::Parents, "Parents", "Gene values of the parents of the next generation"),
-    (ChartKind::Front, "Effort", "Best trade-offs between distance and energy"),
-    (ChartKind::Archive, "Kinds", "Best snake for each kind of behaviour (MAP-Elites)"),
-    (ChartKind::Runs, "Runs", "Compare this run with other runs"),
-    (ChartKind::Methods, "Compare methods", "Compare search methods over many runs"),
-];
 
 impl ChartKind {
     /// Returns whether runs of this strategy have data for a chart of this kind. `has_study` tells whether a study of
@@ -69,11 +45,6 @@ impl ChartKind {
         }
     }
 
-    /// Returns the label of the button.
-    pub fn name(self) -> &'static str {
-        CHART_KINDS[self as usize].1
-    }
-
     /// Returns the text that is shown while there is no data.
     pub fn empty_text(self) -> String {
         let first = " after the first generation";
@@ -82,6 +53,10 @@ impl ChartKind {
             Self::Spread => {
                 ("distribution of the fitness", " when this session finishes a generation")
             }
+            Self::Endings => (
+                "ways in which the trials of each generation ended",
+                " after the first generation. Runs of earlier versions of the program have none in their logs",
+            ),
             Self::Species => (
                 "species of each generation",
                 " after the first generation. Runs of earlier versions of the program have none in their logs",

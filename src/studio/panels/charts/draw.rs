@@ -10,7 +10,7 @@ use egui_plot::{
 use super::downsample::DrawnSeries;
 use super::legend::legend;
 use super::view::{ChartHit, ChartView, HitShape};
-use crate::studio::commands::Command;
+use crate::studio::commands::pick::Pick;
 use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::show_or_join;
@@ -37,7 +37,6 @@ pub(super) fn draw(
     view: &ChartView,
     height: f32,
     shown: &[ShownLane],
-    commands: &mut Vec<Command>,
 ) {
     legend(ui, view);
     let figure = &view.figure;
@@ -58,7 +57,7 @@ pub(super) fn draw(
             for &index in row {
                 ui.vertical(|ui| {
                     ui.set_width(size.x);
-                    part(ui, (view, index), &format!("{id} {index}"), size.y, shown, commands);
+                    part(ui, (view, index), &format!("{id} {index}"), size.y, shown);
                 });
             }
         });
@@ -75,7 +74,6 @@ fn part(
     id: &str,
     height: f32,
     shown: &[ShownLane],
-    commands: &mut Vec<Command>,
 ) {
     let chart = &view.figure.charts[index];
     let hits = view.hits.get(index).map_or(&[][..], Vec::as_slice);
@@ -112,10 +110,8 @@ fn part(
     canvas.mark_labels(chart, &view.drawn[index]);
     canvas.layer_labels(chart);
     for shown in shown {
-        let place = shown.champion.place();
-        let Some(hit) = hits.iter().find(|hit| place.is_some() && hit.place == place) else {
-            continue;
-        };
+        let is_shown = |hit: &&ChartHit| hit.place.map(Pick::Individual) == Some(shown.champion);
+        let Some(hit) = hits.iter().find(is_shown) else { continue };
         match shown.color(palette) {
             Some(color) => canvas.lane_mark(hit.target, color),
             None => canvas.ring(hit.target, palette.second),
@@ -128,7 +124,7 @@ fn part(
     if response.clicked()
         && let Some(pick) = hit.pick
     {
-        commands.push(show_or_join(ui, pick));
+        show_or_join(ui, pick).send(ui);
     }
     let replay = if hit.pick.is_some() {
         "\nClick to replay. Shift-click to add it to the stage"
@@ -255,7 +251,7 @@ impl ChartCanvas<'_> {
         }
     }
 
-    /// Writes the number of each species where its layer is thickest, if there is room.
+    /// Writes the name of each layer, or its number without a name, where the layer is thickest, if there is room.
     fn layer_labels(&self, chart: &Chart) {
         let Self { painter, transform, palette } = self;
         let mut taken: Vec<egui::Rect> = Vec::new();
@@ -265,7 +261,9 @@ impl ChartCanvas<'_> {
             let color = palette.role(series.role);
             let ink = theme::palette::text_on(color);
             let font = egui::FontId::proportional(theme::SMALL_SIZE);
-            let text = painter.layout_no_wrap(number.to_string(), font, ink);
+            let name =
+                if series.name.is_empty() { number.to_string() } else { series.name.clone() };
+            let text = painter.layout_no_wrap(name, font, ink);
             let at = |y: f64| transform.position_from_point(&PlotPoint::new(x, y));
             let height = (at(y - thickness / 2.0).y - at(y + thickness / 2.0).y).abs();
             let area =
@@ -333,8 +331,6 @@ fn add<'a>(plot: &mut PlotUi<'a>, series: &'a Series, drawn: &'a DrawnSeries, pa
 /// Returns the screen position of a chart position, for tests. `area` is the rectangle of the chart.
 #[cfg(test)]
 pub(super) fn screen_position(area: egui::Rect, chart: &Chart, [x, y]: [f64; 2]) -> Pos2 {
-    let ends = |from: f32, to: f32| f64::from(from)..=f64::from(to);
-    let x = egui::remap(x, chart.x.range.clone(), ends(area.left(), area.right()));
-    let y = egui::remap(y, chart.y.range.clone(), ends(area.bottom(), area.top()));
-    egui::pos2(x as f32, y as f32)
+    let transform = PlotTransform::new(area, bounds(&chart.x.range, &chart.y.range), false);
+    transform.position_from_point(&PlotPoint::new(x, y))
 }

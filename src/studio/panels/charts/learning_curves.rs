@@ -47,8 +47,7 @@ impl CurvesPanel {
                 }
             }
         });
-        // There is nothing to click in the chart.
-        draw::draw(ui, "curves", &self.view, height, &[], &mut Vec::new());
+        draw::draw(ui, "curves", &self.view, height, &[]);
         self.table(ui);
     }
 
@@ -113,7 +112,7 @@ fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui_kittest::Harness;
+    use crate::studio::panels::testing::{Sent, clicked, panel};
     use egui_kittest::kittest::Queryable;
     use snakes_core::evolve::StrategyKind;
     use snakes_core::save::{CURVE_POINTS, Protocol, StudiedRun, StudyValue};
@@ -138,13 +137,12 @@ mod tests {
                 stops_at_goal: false,
                 changed: None,
             };
-            let values = [("fitness", Some(24.5)), ("first_landing", first_landing)];
-            let values = values
-                .into_iter()
-                .filter_map(|(name, value)| Some((name.to_owned(), StudyValue::Number(value?))));
+            let landing = first_landing.map(|landing| ("first_landing", landing));
+            let values = [("fitness", 24.5)].into_iter().chain(landing);
+            let number = |(name, value): (&str, f64)| (name.to_owned(), StudyValue::Number(value));
             let run = StudiedRun {
                 seed,
-                values: values.collect(),
+                values: values.map(number).collect(),
                 curve: (0..CURVE_POINTS).map(|point| Some(point as f32 / 4.0)).collect(),
                 run_hash: String::new(),
             };
@@ -155,20 +153,16 @@ mod tests {
 
     #[test]
     fn the_table_shows_the_methods_of_the_selected_controller() {
-        let mut panel = CurvesPanel::new(&study());
-        let size = egui::vec2(theme::PANEL_WIDTH, 500.0);
-        let mut harness =
-            Harness::builder().with_size(size).build_ui(|ui| panel.ui(ui, theme::PLOT_HEIGHT));
-        harness.run();
-        for text in ["Genetic algorithm", "2 of 3", "140", "never", "0 of 1", "24.5 m"] {
-            assert!(harness.query_all_by_label(text).next().is_some(), "{text}");
-        }
+        let mut curves = CurvesPanel::new(&study());
+        let size = [theme::PANEL_WIDTH, 500.0];
+        let mut panel = panel(size, |ui| curves.ui(ui, theme::PLOT_HEIGHT));
         // The controller is named in the legend and in the table.
-        let is_shown =
-            |harness: &Harness<'_>, name| harness.query_all_by_label(name).next().is_some();
-        assert!(!is_shown(&harness, "Halving"));
-        harness.get_by_label("signal").click();
-        harness.run();
-        assert!(is_shown(&harness, "Halving") && !is_shown(&harness, "Genetic algorithm"));
+        let is_shown = |panel: &Sent<'_>, name| panel.query_all_by_label(name).next().is_some();
+        for text in ["Genetic algorithm", "2 of 3", "140", "never", "0 of 1", "24.5 m"] {
+            assert!(is_shown(&panel, text), "{text}");
+        }
+        assert!(!is_shown(&panel, "Halving"));
+        clicked(&mut panel, "signal");
+        assert!(is_shown(&panel, "Halving") && !is_shown(&panel, "Genetic algorithm"));
     }
 }

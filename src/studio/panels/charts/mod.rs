@@ -35,8 +35,8 @@ use crate::studio::ui::text_rows::{explain, title, title_and};
 use crate::studio::ui::theme;
 use snakes_core::save::StudyRuns;
 
-use band_kinds::{BLOCKS, SPECIES};
-use chart_kind::{CHART_KINDS, ChartKind};
+use band_kinds::{BLOCKS, ENDINGS, SPECIES};
+use chart_kind::ChartKind;
 use learning_curves::CurvesPanel;
 use torques::TorqueComparison;
 use view::{ChartView, Version};
@@ -62,14 +62,13 @@ impl ChartsPanel {
         }
     }
 
-    /// Draws the panel and collects the user's commands. `selected` is the selected snake on the stage.
+    /// Draws the panel and sends the user's commands. `selected` is the selected snake on the stage.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
         run: &CurrentRun,
         shown: &[ShownLane],
         selected: Option<&StagedChampion>,
-        commands: &mut Vec<Command>,
     ) {
         let strategy = run.settings().evolution.strategy;
         let has_study = self.curves.is_some();
@@ -79,9 +78,9 @@ impl ChartsPanel {
         }
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
-            let offered = CHART_KINDS.into_iter().filter(|(kind, ..)| is_offered(*kind));
-            for (kind, name, hint) in offered {
-                ui.selectable_value(&mut self.kind, kind, name).on_hover_text(hint);
+            for kind in ChartKind::ALL.into_iter().filter(|kind| is_offered(*kind)) {
+                let choice = ui.selectable_value(&mut self.kind, kind, kind.name());
+                choice.on_hover_text(kind.hint());
             }
         });
         let tallest = ui.available_width() * theme::MAX_CHART_ASPECT;
@@ -92,7 +91,7 @@ impl ChartsPanel {
         let (view, shown) = match kind {
             ChartKind::Methods => {
                 if let Some(curves) = &mut self.curves {
-                    header(ui, &curves.view, kind, commands);
+                    header(ui, &curves.view, kind);
                     curves.ui(ui, height);
                 }
                 return;
@@ -122,8 +121,8 @@ impl ChartsPanel {
         };
         match view {
             Ok(view) => {
-                header(ui, view, kind, commands);
-                draw::draw(ui, kind.name(), view, height, shown, commands);
+                header(ui, view, kind);
+                draw::draw(ui, kind.name(), view, height, shown);
             }
             Err(why) => {
                 title(ui, kind.name());
@@ -133,9 +132,9 @@ impl ChartsPanel {
         if kind == ChartKind::Runs {
             if !self.has_listed_runs {
                 self.has_listed_runs = true;
-                commands.push(Command::Run(RunCommand::ListRuns));
+                Command::Run(RunCommand::ListRuns).send(ui);
             }
-            runs::run_list(ui, run, commands);
+            runs::run_list(ui, run);
         }
     }
 }
@@ -147,21 +146,14 @@ pub(super) struct FitnessChart {
 }
 
 impl FitnessChart {
-    /// Draws the chart `height` points high, and collects the user's commands.
-    pub fn ui(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        height: f32,
-        shown: &[ShownLane],
-        commands: &mut Vec<Command>,
-    ) {
+    /// Draws the chart `height` points high, and sends the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, height: f32, shown: &[ShownLane]) {
         let version = run.version();
         if !matches!(&self.known, Some((at, _)) if *at == version) {
             self.known = Some((version, fitness::view(run.settings(), run.reports())));
         }
         let Some((_, view)) = &self.known else { return };
-        draw::draw(ui, "fitness alone", view, height, shown, commands);
+        draw::draw(ui, "fitness alone", view, height, shown);
     }
 }
 
@@ -172,6 +164,7 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     match kind {
         ChartKind::Fitness => Some(fitness::view(settings, run.reports())),
         ChartKind::Spread => Some(spread::view(settings, exploration?.generation.as_ref()?)),
+        ChartKind::Endings => Some(bands::view(ENDINGS, settings, run.reports())),
         ChartKind::Species => Some(bands::view(SPECIES, settings, run.reports())),
         ChartKind::Blocks => Some(bands::view(BLOCKS, settings, run.reports())),
         ChartKind::Bodies => {
@@ -195,7 +188,7 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
 }
 
 /// Draws the title of a chart and its export buttons.
-fn header(ui: &mut egui::Ui, view: &ChartView, kind: ChartKind, commands: &mut Vec<Command>) {
+fn header(ui: &mut egui::Ui, view: &ChartView, kind: ChartKind) {
     let ChartView { figure, is_of_run, .. } = view;
     let refusal = figure.is_empty().then_some("The chart is still empty");
     title_and(ui, &figure.title, |ui| {
@@ -206,7 +199,7 @@ fn header(ui: &mut egui::Ui, view: &ChartView, kind: ChartKind, commands: &mut V
             let (figure, name) = (Arc::clone(figure), kind.name().to_lowercase());
             let export = ChartExport { figure, name, format, is_of_run: *is_of_run };
             let export = Command::Run(RunCommand::ExportChart(export));
-            CommandButton::small(label, hint, export).unless(refusal).show(ui, commands);
+            CommandButton::new(label, hint, export).small().unless(refusal).show(ui);
         }
     });
 }

@@ -19,9 +19,8 @@ pub(super) fn view(settings: &Settings, front: &Front) -> ChartView {
     ];
     let hit = |member: &FrontMember| {
         let words = hover_text(member, &settings.trial);
-        let at @ IndividualId { generation, individual } = id(member);
-        let pick = Pick::Front { generation, individual };
-        ChartHit::of(HitShape::Point(place(member)), move || words.clone(), pick, at)
+        let at = id(member);
+        ChartHit::of(HitShape::Point(place(member)), move || words.clone(), Pick::Front(at), at)
     };
     let figure = Figure::of("Distance and energy", Chart::new(x, y, series));
     ChartView::new(figure, vec![front.members().map(hit).collect()])
@@ -63,8 +62,7 @@ mod tests {
         let front = &run.exploration().expect("explored").front;
         let view = view(run.settings(), front);
         let best = front.members().last().expect("a member");
-        let FrontMember { generation, individual, .. } = *best;
-        let show = Command::Stage(StageCommand::Show(Pick::Front { generation, individual }));
+        let show = Command::Stage(StageCommand::Show(Pick::Front(id(best))));
         assert_eq!(*clicked(&view, place(best), egui::vec2(3.0, 3.0)).state(), [show]);
         // There is no member far below the point.
         assert_eq!(*clicked(&view, place(best), egui::vec2(0.0, 60.0)).state(), []);

@@ -8,6 +8,7 @@ use super::fitness::{fitness_axis, generation_axis};
 use super::view::{ChartHit, ChartView, HitShape};
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::state::current_run::{CurrentRun, ListedRun, MOST_COMPARED};
+use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::evolve::{GenerationRecord, RunPlan, Statistics};
@@ -88,7 +89,7 @@ fn title(settings: &str, plan: &RunPlan) -> String {
 }
 
 /// Draws the list of runs to select, and the errors of runs that cannot be read.
-pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun) {
     let others = &run.others;
     for compared in &others.compared {
         let name = compared.folder.file_name().unwrap_or_default().display();
@@ -110,9 +111,8 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             Some(_) => ui.label(format!("Compare with up to {MOST_COMPARED} other runs:")),
             None => ui.label("There are no other runs yet."),
         };
-        if ui.small_button("Refresh").on_hover_text("Read the list of runs again").clicked() {
-            commands.push(Command::Run(RunCommand::ListRuns));
-        }
+        let list = Command::Run(RunCommand::ListRuns);
+        CommandButton::new("Refresh", "Read the list of runs again", list).small().show(ui);
     });
     egui::ScrollArea::vertical().id_salt("runs").max_height(theme::PLOT_HEIGHT).show(ui, |ui| {
         for ListedRun { run: other, settings, .. } in choices {
@@ -125,7 +125,7 @@ pub(super) fn run_list(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<C
             let refusal = format!("{MOST_COMPARED} runs are selected; deselect one of them first");
             let response = response.on_hover_text(hint).on_disabled_hover_text(refusal);
             if response.clicked() {
-                commands.push(Command::Run(RunCommand::Compare(other.folder.clone())));
+                Command::Run(RunCommand::Compare(other.folder.clone())).send(ui);
             }
         }
     });

@@ -6,13 +6,12 @@ use super::*;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{RunCommand, StageCommand};
 use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, click_at};
-use crate::studio::panels::shown::ShownChampion;
 use crate::studio::panels::testing::{self, Sent, shows};
 use crate::studio::state::current_run::{
-    bodies_run, compared_run, explored_run, prepared_run, species_run,
+    bodies_run, compared_run, explored_run, next_generation, prepared_run, species_run,
 };
 use snakes_core::evolve::{IndividualId, RunPlan, Settings, StrategyKind};
-use snakes_lab::run::{Experiment, LocalPool, RunControl};
+use snakes_lab::run::Experiment;
 
 /// Runs this number of generations for 0.5 s each. `change` changes the settings, which are also returned.
 pub(super) fn experiment(
@@ -23,9 +22,8 @@ pub(super) fn experiment(
     settings.trial.duration_s = 0.5;
     change(&mut settings);
     let mut experiment = Experiment::new(RunPlan::new("test", 1, settings.clone()));
-    let pool = LocalPool::new(1).expect("threads");
     for _ in 0..generations {
-        experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled");
+        next_generation(&mut experiment);
     }
     (settings, experiment)
 }
@@ -33,8 +31,8 @@ pub(super) fn experiment(
 /// Draws a chart, and clicks at a chart position, moved by `off` points. The pointer stays beside that place.
 pub(super) fn clicked<'a>(view: &'a ChartView, at: [f64; 2], off: egui::Vec2) -> Sent<'a> {
     let height = theme::PLOT_HEIGHT + 35.0;
-    let mut panel = testing::panel([theme::PANEL_WIDTH, 500.0], move |ui, commands| {
-        draw::draw(ui, "clicked", view, height, &[], commands);
+    let mut panel = testing::panel([theme::PANEL_WIDTH, 500.0], move |ui| {
+        draw::draw(ui, "clicked", view, height, &[]);
     });
     let area = panel.get_by_label(&format!("Chart: {}", view.figure.title)).rect();
     let place = draw::screen_position(area, &view.figure.charts[0], at) + off;
@@ -54,14 +52,12 @@ fn with(
     let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
     let best = run.reports().last().and_then(|report| report.champion.as_ref());
     let selected = best.map(|best| StagedChampion::from_run(best, run.number()));
-    let mut harness = testing::panel([width, 700.0], |ui, commands| {
-        panel.ui(ui, run, &[], selected.as_ref(), commands);
+    let mut harness = testing::panel([width, 700.0], |ui| {
+        panel.ui(ui, run, &[], selected.as_ref());
     });
     // Opening a chart may request the list of runs, which is removed.
     harness.state_mut().clear();
-    act(&mut harness);
-    harness.run();
-    harness.state().clone()
+    testing::sent_by(harness, act)
 }
 
 #[test]
@@ -82,8 +78,8 @@ fn a_chart_is_selected_by_its_name() {
 /// Returns the kinds of charts that a run has.
 fn offered(run: &CurrentRun) -> Vec<ChartKind> {
     let strategy = run.settings().evolution.strategy;
-    let all = CHART_KINDS.map(|(kind, ..)| kind).into_iter();
-    all.filter(|kind| kind.is_offered(strategy, false)).collect()
+    let is_offered = |kind: &ChartKind| kind.is_offered(strategy, false);
+    ChartKind::ALL.into_iter().filter(is_offered).collect()
 }
 
 #[test]
@@ -171,14 +167,9 @@ fn a_click_replays_a_generation_a_bar_an_ancestor_or_a_parent() {
         };
         let panel = clicked(&view, at, egui::Vec2::ZERO);
         let first = hit.words().lines().next().expect("words").to_owned();
-        let words = shows(&panel, &first);
-        let sent = panel.state().clone();
-        assert_eq!(
-            sent,
-            [Command::Stage(StageCommand::Show(hit.pick.expect("a snake")))],
-            "{kind:?}"
-        );
-        assert!(words, "{kind:?} is read out: {}", hit.words());
+        assert!(shows(&panel, &first), "{kind:?} is read out: {}", hit.words());
+        let show = Command::Stage(StageCommand::Show(hit.pick.expect("a snake")));
+        assert_eq!(*panel.state(), [show], "{kind:?}");
     }
 }
 
@@ -249,9 +240,7 @@ fn a_long_name_in_a_legend_wraps() {
     let mut view = fitness::view(&Settings::default(), &long_reports(3));
     let figure = Arc::make_mut(&mut view.figure);
     figure.charts[0].series[0].name = "a run of a preset with quite a long name: median ".repeat(3);
-    let harness = testing::panel([300.0, 700.0], |ui, commands| {
-        draw::draw(ui, "long", &view, 400.0, &[], commands);
-    });
+    let harness = testing::panel([300.0, 700.0], |ui| draw::draw(ui, "long", &view, 400.0, &[]));
     assert_nothing_is_wider_than(&harness, 300.0);
 }
 
@@ -283,14 +272,14 @@ fn in_a_narrow_panel_axes_have_titles_with_units_and_a_legend_says_what_a_click_
 #[test]
 fn an_individual_in_a_lane_has_the_dot_of_that_lane() {
     let run = explored_run();
-    let origin = run.reports()[1].champion.as_ref().expect("a healthy snake").origin.clone();
-    let place = IndividualId { generation: 2, individual: origin.individual };
-    let champion = ShownChampion::Found(place);
+    let best = run.reports()[1].champion.as_ref().expect("a healthy snake");
+    let individual = best.origin.individual;
+    let champion = Pick::Individual(IndividualId { generation: 2, individual });
     let view = view_of(ChartKind::Fitness, &run).expect("explored");
     for lane in [Some(3), None] {
         let shown = [ShownLane { champion, lane }];
-        let harness = testing::panel([500.0, 500.0], |ui, commands| {
-            draw::draw(ui, "lanes", &view, 300.0, &shown, commands);
+        let harness = testing::panel([500.0, 500.0], |ui| {
+            draw::draw(ui, "lanes", &view, 300.0, &shown);
         });
         let color = theme::of_context(&harness.ctx).lane_color(3);
         let is_dot = |shape: &egui::Shape| match shape {

@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use super::view::{ChartHit, ChartView, HitShape, Version, place_of, snake_of_generation};
+use super::view::{ChartHit, ChartView, HitShape, Version, snake_of_generation};
+use crate::studio::panels::shown::place_of;
 use crate::studio::stage::staged_champion::{ChampionSource, StagedChampion};
 use crate::studio::state::current_run::CurrentRun;
 use snakes_core::genome::{Genome, JointCommands};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::archive_pictures::ArchivePictures;
 use super::downsample::{DrawnSeries, drawn};
 use crate::studio::commands::pick::Pick;
-use snakes_core::evolve::{Champion, IndividualId, Origin};
+use snakes_core::evolve::IndividualId;
 use snakes_lab::plot::Figure;
 
 /// A chart or figure that is computed once and cached until its data changes.
@@ -89,10 +89,4 @@ pub(super) fn generation_and_snake(of: IndividualId) -> String {
 /// Names an individual of a run within a sentence: "snake 12 of generation 3".
 pub(super) fn snake_of_generation(of: IndividualId) -> String {
     format!("snake {} of generation {}", of.individual + 1, of.generation)
-}
-
-/// Returns the place of a champion in the run that found it.
-pub(super) fn place_of(champion: &Champion) -> IndividualId {
-    let Origin { generation, individual, .. } = champion.origin;
-    IndividualId { generation, individual }
 }

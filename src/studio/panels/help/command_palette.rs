@@ -18,8 +18,8 @@ pub(crate) struct CommandPalette {
     typed: String,
     /// Index of the selected match; the first is 0.
     chosen: usize,
-    /// Whether the palette was open in the previous frame.
-    is_open: bool,
+    /// Whether the palette was open in the previous frame. If not, it begins with an empty search text.
+    pub is_open: bool,
     presets: Vec<(String, String)>,
 }
 
@@ -36,14 +36,8 @@ struct PaletteEntry {
 const MAX_MATCHES: usize = 10;
 
 impl CommandPalette {
-    /// Draws the palette over the window and collects the user's commands.
-    pub fn ui(
-        &mut self,
-        context: &egui::Context,
-        situation: Situation,
-        lessons: &[&str],
-        commands: &mut Vec<Command>,
-    ) {
+    /// Draws the palette over the window and sends the user's commands.
+    pub fn ui(&mut self, context: &egui::Context, situation: Situation, lessons: &[&str]) {
         let is_new = !self.is_open;
         if is_new {
             *self = Self { presets: presets(), is_open: true, ..Self::default() };
@@ -88,15 +82,10 @@ impl CommandPalette {
             }
         });
         if let Some(entry) = taken {
-            commands.extend([Command::Window(WindowCommand::CloseModal), entry.command]);
+            Command::send_all([Command::Window(WindowCommand::CloseModal), entry.command], context);
         } else if shown.backdrop_response.clicked() {
-            commands.push(Command::Window(WindowCommand::CloseModal));
+            Command::Window(WindowCommand::CloseModal).send(context);
         }
-    }
-
-    /// Marks the palette as closed, so that the search text is empty when it opens again.
-    pub fn close(&mut self) {
-        self.is_open = false;
     }
 
     fn entries(&self, situation: Situation, lessons: &[&str]) -> Vec<PaletteEntry> {
@@ -117,14 +106,18 @@ impl CommandPalette {
             let command = Command::Lesson(LessonCommand::Begin(index));
             entry("Lesson", (*name).to_owned(), command)
         });
-        let settings =
-            every_setting().into_iter().map(|ListedSetting { setting, section, .. }| {
-                let name = format!("{} ({})", setting.label, section.title.to_lowercase());
-                entry("Setting", name, Command::Window(WindowCommand::FindSetting(setting.label)))
-            });
+        let settings = every_setting().into_iter().map(|of| {
+            let command = Command::Window(WindowCommand::FindSetting(of.setting.label));
+            entry("Setting", name_of(&of), command)
+        });
         let actions = actions().iter().filter_map(of_action);
         actions.chain(presets).chain(lessons).chain(settings).collect()
     }
+}
+
+/// Returns the name of a setting with its section.
+fn name_of(of: &ListedSetting) -> String {
+    format!("{} ({})", of.setting.label, of.section.title.to_lowercase())
 }
 
 fn presets() -> Vec<(String, String)> {
@@ -168,17 +161,16 @@ mod three_clicks;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::commands::screenshot_area::ScreenshotArea;
-    use crate::studio::commands::{PlayerCommand, ViewCommand};
-    use crate::studio::panels::testing::{Sent, panel, press};
+    use crate::studio::commands::{PlayerCommand, ScreenshotArea, ViewCommand};
+    use crate::studio::panels::testing::{Sent, panel, press, sent_by};
     use egui_kittest::kittest::{NodeT, Queryable};
 
     /// Creates the palette in a window of this size, after a text was typed.
     fn palette(size: [f32; 2], typed: &str) -> Sent<'static> {
         let mut palette = CommandPalette::default();
-        let mut harness = panel(size, move |ui, commands| {
+        let mut harness = panel(size, move |ui| {
             let lessons = ["The grip of a step"];
-            palette.ui(&ui.ctx().clone(), Situation::default(), &lessons, commands);
+            palette.ui(&ui.ctx().clone(), Situation::default(), &lessons);
         });
         harness.get_by_label("Find a command").type_text(typed);
         harness.run();
@@ -187,10 +179,7 @@ mod tests {
 
     /// Types a text and calls `act`. Returns the command that was sent after the palette was closed, or `None`.
     fn sent(typed: &str, act: impl FnOnce(&mut Sent<'_>)) -> Option<Command> {
-        let mut harness = palette([800.0, 600.0], typed);
-        act(&mut harness);
-        harness.run();
-        match &harness.state()[..] {
+        match &sent_by(palette([800.0, 600.0], typed), act)[..] {
             [] => None,
             [Command::Window(WindowCommand::CloseModal), command] => Some(command.clone()),
             other => panic!("{other:?}"),

@@ -10,19 +10,19 @@ use crate::studio::ui::theme;
 
 /// Mouse actions on the stage, each with its effect.
 const MOUSE: [(&str, &str); 6] = [
-    ("Click", "Show a limb's numbers"),
-    ("Drag", "Turn the camera; on a limb, pull the limb"),
+    ("Click", "Show a block's numbers"),
+    ("Drag", "Turn the camera; on a block, pull the block"),
     ("Right drag", "Move the camera"),
     ("Wheel", "Zoom"),
     ("Double click", "Centre the camera there"),
     ("Drop a file", "Import a champion or a run"),
 ];
 
-/// Draws the list over the window, and collects the user's commands.
-pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) {
-    let palette = theme::of_context(context);
+/// Draws the list over the window, and sends the user's commands.
+pub(crate) fn key_overlay(context: &egui::Context) {
     let screen = context.content_rect();
-    let modal = egui::Modal::new(egui::Id::new("keys")).frame(palette.dialog());
+    let frame = theme::of_context(context).dialog();
+    let modal = egui::Modal::new(egui::Id::new("keys")).frame(frame);
     let room = screen.width() - theme::GAP * 8.0;
     let columns = ((room / theme::KEY_COLUMN_WIDTH) as usize).clamp(1, 3);
     let shown = modal.show(context, |ui| {
@@ -31,7 +31,7 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
             ui.label(egui::RichText::new("Keyboard and mouse").size(theme::HEADING_SIZE).strong());
             at_right(ui, |ui| {
                 let close = Command::Window(WindowCommand::CloseModal);
-                CommandButton::new("Close", "Esc or ?", close).show(ui, commands);
+                CommandButton::new("Close", "Esc or ?", close).show(ui);
             });
         });
         explain(ui, "Press Ctrl K to search all commands by name.");
@@ -50,7 +50,7 @@ pub(crate) fn key_overlay(context: &egui::Context, commands: &mut Vec<Command>) 
         });
     });
     if shown.backdrop_response.clicked() {
-        commands.push(Command::Window(WindowCommand::CloseModal));
+        Command::Window(WindowCommand::CloseModal).send(context);
     }
 }
 

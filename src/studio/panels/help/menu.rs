@@ -3,10 +3,9 @@
 use bevy_egui::egui;
 use bevy_egui::egui::containers::menu::MenuBar;
 
-use crate::studio::commands::Command;
 use crate::studio::commands::actions::{Action, Menu, Situation, actions};
 use crate::studio::commands::files::{FileCommand, FileQuestion};
-use crate::studio::commands::share::ShareCommand;
+use crate::studio::commands::{Command, ShareCommand};
 use crate::studio::state::files::RecentFiles;
 use crate::studio::state::shares::ShareProgress;
 use crate::studio::ui::accessible::named_selected;
@@ -19,7 +18,7 @@ use snakes_core::save::library::run_of_plan;
 /// Function that returns whether the setting that a command toggles is on, or `None` for other commands.
 pub(crate) type IsOn<'a> = &'a dyn Fn(&Command) -> Option<bool>;
 
-/// Draws the menus, and collects the user's commands. `is_on` returns whether the setting that a command toggles is on.
+/// Draws the menus, and sends the user's commands. `is_on` returns whether the setting that a command toggles is on.
 /// `recent` are the files that were opened recently. `about` is shown at the right end.
 pub(crate) fn menu(
     ui: &mut egui::Ui,
@@ -27,7 +26,6 @@ pub(crate) fn menu(
     is_on: IsOn<'_>,
     recent: &RecentFiles,
     (about, share): (&str, Option<&ShareProgress>),
-    commands: &mut Vec<Command>,
 ) {
     MenuBar::new().ui(ui, |ui| {
         let name = egui::RichText::new("Snakes & Stairs").strong().color(theme::of(ui).accent);
@@ -50,9 +48,9 @@ pub(crate) fn menu(
                         ui.label(weak(ui, SHARED));
                     }
                     for action in listed() {
-                        entry(ui, action, situation, (has_toggles, is_on), commands);
+                        entry(ui, action, situation, (has_toggles, is_on));
                         if action.name == BEFORE_RECENT {
-                            open_recent(ui, recent, commands);
+                            open_recent(ui, recent);
                         }
                     }
                 });
@@ -60,7 +58,7 @@ pub(crate) fn menu(
         }
         at_right(ui, |ui| {
             if let Some(share) = share {
-                share_progress(ui, share, commands);
+                share_progress(ui, share);
             }
             ui.add(egui::Label::new(weak(ui, about)).truncate()).on_hover_text(about);
         });
@@ -68,16 +66,16 @@ pub(crate) fn menu(
 }
 
 /// Draws the progress of the file that is being written, and the button that cancels it.
-fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<Command>) {
+fn share_progress(ui: &mut egui::Ui, share: &ShareProgress) {
     let cancel = egui::Button::new("Cancel").frame(true).small();
     let stop = Command::Share(ShareCommand::Cancel);
-    CommandButton::of(cancel, "Cancel writing the file", stop).show(ui, commands);
+    CommandButton::of(cancel, "Cancel writing the file", stop).show(ui);
     let bar = egui::ProgressBar::new(share.share).desired_width(theme::COLUMN_WIDTHS[2]);
     ui.add(bar.desired_height(ui.spacing().interact_size.y * 0.5));
     let words = share.in_words();
     let hint = match share.name.ends_with(".gif") {
         true => format!(
-            "{words}. A GIF is drawn more than once, to choose its colours and its size; an MP4 takes less time"
+            "{words}. A GIF is drawn more than once, to choose its colours and its size: minutes without a graphics card. An MP4 takes less time"
         ),
         false => words.clone(),
     };
@@ -86,20 +84,21 @@ fn share_progress(ui: &mut egui::Ui, share: &ShareProgress, commands: &mut Vec<C
 }
 
 /// Contents of the files of the menu Share.
-const SHARED: &str = "Snakes on the stage; of a whole generation, the best";
+const SHARED: &str =
+    "What these files hold: the snakes on the stage, or the best one of a whole generation";
 /// Name of the action after which the submenu of recent files is placed.
 const BEFORE_RECENT: &str = "Open…";
 
 /// Draws the submenu of recent files: names, with full paths as tooltips. The plan of a run has the name of its folder.
-fn open_recent(ui: &mut egui::Ui, recent: &RecentFiles, commands: &mut Vec<Command>) {
+fn open_recent(ui: &mut egui::Ui, recent: &RecentFiles) {
     ui.add_enabled_ui(!recent.0.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             ui.set_min_width(theme::MENU_WIDTH);
             for path in &recent.0 {
                 let button = egui::Button::new(run_of_plan(path).name()).truncate();
-                if ui.add(button).on_hover_text(path.display().to_string()).clicked() {
-                    let paths = vec![path.clone()];
-                    commands.push(Command::File(FileCommand::Answer(FileQuestion::Open, paths)));
+                let open = FileCommand::Answer(FileQuestion::Open, vec![path.clone()]);
+                let hint = path.display().to_string();
+                if CommandButton::of(button, hint, Command::File(open)).show(ui) {
                     ui.close();
                 }
             }
@@ -113,7 +112,6 @@ fn entry(
     action: &Action,
     situation: Situation,
     (has_toggles, is_on): (bool, IsOn<'_>),
-    commands: &mut Vec<Command>,
 ) {
     // An action for several digits needs a digit, which a menu cannot supply.
     if action.key().contains("...") {
@@ -141,7 +139,7 @@ fn entry(
         hint => shown.inner.on_hover_text(hint),
     };
     if shown.clicked() {
-        commands.extend(command);
+        Command::send_all(command, ui);
         ui.close();
     }
 }
@@ -149,7 +147,7 @@ fn entry(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::commands::RunCommand;
+    use crate::studio::commands::{FilmSize, RunCommand};
     use crate::studio::panels::settings::tests::click;
     use crate::studio::panels::testing::{Sent, clicked, panel};
     use egui_kittest::Harness;
@@ -157,8 +155,8 @@ mod tests {
 
     /// Creates the menu bar in the default situation.
     fn bar<'a>(is_on: IsOn<'a>, recent: &'a RecentFiles) -> Sent<'a> {
-        panel([800.0, 600.0], move |ui, commands| {
-            menu(ui, Situation::default(), is_on, recent, ("climb, seed 1", None), commands);
+        panel([800.0, 600.0], move |ui| {
+            menu(ui, Situation::default(), is_on, recent, ("climb, seed 1", None));
         })
     }
 
@@ -205,9 +203,9 @@ mod tests {
         for size in [egui::vec2(1024.0, 640.0), egui::vec2(819.0, 512.0)] {
             for of in Menu::ALL {
                 let recent = RecentFiles::default();
-                let mut harness = Harness::builder().with_size(size).build_ui(move |ui| {
+                let mut harness = panel(size.into(), move |ui| {
                     theme::apply(ui.ctx());
-                    menu(ui, Situation::default(), &|_| None, &recent, ("", None), &mut Vec::new());
+                    menu(ui, Situation::default(), &|_| None, &recent, ("", None));
                 });
                 click(&mut harness, of.name());
                 let mut entries = actions().iter().filter(|action| action.menu == of);
@@ -225,11 +223,11 @@ mod tests {
     #[test]
     fn a3_the_share_menu_has_every_format_until_a_file_is_being_written() {
         use snakes_lab::export::ExportFormat;
-        type State = (Situation, Option<ShareProgress>, Vec<Command>);
+        type State = (Situation, Option<ShareProgress>);
         let mut harness = Harness::new_ui_state(
-            |ui, (now, share, commands): &mut State| {
+            |ui, (now, share): &mut State| {
                 let recent = RecentFiles::default();
-                menu(ui, *now, &|_| None, &recent, ("climb, seed 1", share.as_ref()), commands);
+                menu(ui, *now, &|_| None, &recent, ("climb, seed 1", share.as_ref()));
             },
             State::default(),
         );
@@ -239,11 +237,11 @@ mod tests {
             let ending = format!("(.{})", format.info().ending);
             harness.get_by_label_contains(&ending).click();
             harness.run();
-            let asked = Command::Share(ShareCommand::Ask(format));
-            assert_eq!(harness.state_mut().2.pop(), Some(asked), "{ending}");
+            let asked = Command::Share(ShareCommand::Ask(format, FilmSize::Usual));
+            assert_eq!(Command::take_sent(&harness.ctx), [asked], "{ending}");
         }
         assert!(harness.query_by_label_contains("climb.mp4").is_none());
-        let (now, share, _) = harness.state_mut();
+        let (now, share) = harness.state_mut();
         now.is_sharing = true;
         *share = Some(ShareProgress {
             name: "climb.mp4".to_owned(),
@@ -255,25 +253,21 @@ mod tests {
         harness.get_by_label("climb.mp4  42 %, about 20 s left, about 6.1 MB");
         harness.get_by_label_contains("climb.mp4").hover();
         harness.run_steps(60);
-        assert!(harness.query_by_label_contains("an MP4 takes less time").is_none());
-        let (_, share, _) = harness.state_mut();
-        *share = Some(ShareProgress {
-            name: "climb.gif".to_owned(),
-            share: 0.0,
-            expected_bytes: None,
-            left: None,
-        });
+        assert!(harness.query_by_label_contains("An MP4 takes less time").is_none());
+        let (_, share) = harness.state_mut();
+        let name = "climb.gif".to_owned();
+        *share = Some(ShareProgress { name, ..ShareProgress::default() });
         harness.run();
         harness.get_by_label("climb.gif  0 %, preparing").hover();
         harness.run_steps(60);
-        harness.get_by_label_contains("an MP4 takes less time");
+        harness.get_by_label_contains("An MP4 takes less time");
         click(&mut harness, "Cancel");
         let cancel = Command::Share(ShareCommand::Cancel);
-        assert_eq!(harness.state_mut().2.pop(), Some(cancel));
+        assert_eq!(Command::take_sent(&harness.ctx), [cancel]);
         click(&mut harness, "Share");
         harness.get_by_label_contains("(.csv)").click();
         harness.run();
-        assert_eq!(harness.state().2, [], "one file at a time");
+        assert_eq!(Command::take_sent(&harness.ctx), [], "one file at a time");
     }
 
     #[test]

@@ -26,9 +26,9 @@ struct TourStep {
 const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Stage,
-        title: "Snakes that learn to climb",
+        title: "Snakes that evolve to climb",
         text: "All snakes of a generation move together, the best in full colour. Their movements evolve. Use the \
-               player below to pause or move through time. Drag to turn the camera; drag a limb to pull it.",
+               player below to pause or move through time. Drag to turn the camera; drag a block to pull it.",
         try_it: "Pause it with Space, or click in the strip below the player",
         is_done_by: |command| {
             matches!(command, Command::Player(PlayerCommand::Toggle | PlayerCommand::Seek(_)))
@@ -37,7 +37,7 @@ const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Run,
         title: "Evolution runs in the background",
-        text: "Start and pause it here. Each generation tries many snakes, and those of the next are drawn around \
+        text: "Start and pause it here. Each generation tries many snakes, and those of the next vary around \
                the average of the best. When one beats all earlier ones, its generation appears on the stage.",
         try_it: "Pause evolution, or start it",
         is_done_by: |command| {
@@ -100,23 +100,25 @@ pub(crate) struct Tour {
 }
 
 impl Tour {
-    /// Draws a step beside the highlighted rectangle `target`, and collects the user's commands. `commands` contains
-    /// those of the panels in this frame. `player_commands` counts all commands to the player, including those of keys.
-    /// A paused stage alone proves nothing, because it is also paused until the first generation is finished.
+    /// Draws a step beside the highlighted rectangle `target`, and sends the user's commands. Those of the panels in this
+    /// frame show what was tried. `player_commands` counts all commands to the player, including those of keys. A paused
+    /// stage alone proves nothing, because it is also paused until the first generation is finished.
     pub fn ui(
         &mut self,
         context: &egui::Context,
         index: usize,
         target: Option<egui::Rect>,
         player_commands: u32,
-        commands: &mut Vec<Command>,
     ) {
         let Some(step) = STEPS.get(index) else { return };
         let has_acted = step.highlights == PanelKind::Stage
             && player_commands > *self.first_commands.get_or_insert(player_commands);
-        self.is_done[index] |= has_acted || commands.iter().any(step.is_done_by);
-        if commands.iter().any(|command| matches!(command, Command::Lesson(_))) {
-            commands.push(Command::Window(WindowCommand::CloseModal));
+        let sent = Command::take_sent(context);
+        self.is_done[index] |= has_acted || sent.iter().any(step.is_done_by);
+        let begins_lesson = sent.iter().any(|command| matches!(command, Command::Lesson(_)));
+        Command::send_all(sent, context);
+        if begins_lesson {
+            Command::Window(WindowCommand::CloseModal).send(context);
         }
         let palette = theme::of_context(context);
         let screen = context.content_rect();
@@ -144,7 +146,7 @@ impl Tour {
                 ui.label(step.text);
                 to_try(ui, step.try_it, is_done);
                 ui.add_space(theme::GAP / 2.0);
-                ui.horizontal(|ui| buttons(ui, index, commands));
+                ui.horizontal(|ui| buttons(ui, index));
             });
         });
         if let Some(points) = target.and_then(|target| arrow(shown.response.rect, target)) {
@@ -194,23 +196,28 @@ fn go_to(step: usize) -> Command {
     Command::Window(WindowCommand::ToggleModal(Modal::Tour(step)))
 }
 
-fn buttons(ui: &mut egui::Ui, index: usize, commands: &mut Vec<Command>) {
+fn buttons(ui: &mut egui::Ui, index: usize) {
     let end = Command::Window(WindowCommand::CloseModal);
     let is_last = index + 1 == STEPS.len();
     let (label, next) = if is_last { ("Done", end.clone()) } else { ("Next", go_to(index + 1)) };
     let forward = ui.add(accent_button(ui, label));
     // The button never takes the focus by itself, because Space would then press it instead of pausing the stage.
-    let is_free = ui.memory(|memory| memory.focused().is_none());
+    // A field in which Enter ends the typing has lost the focus by now, so the focus of the frame before counts, too.
+    let has_focus = ui.memory(|memory| memory.focused().is_some());
+    let id = egui::Id::new("something had the focus");
+    let had_focus = ui.data(|data| data.get_temp(id) == Some(true));
+    ui.data_mut(|data| data.insert_temp(id, has_focus));
+    let is_free = !has_focus && !had_focus;
     let enter =
         is_free && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Enter));
     if forward.clicked() || enter {
-        commands.push(next);
+        next.send(ui);
     }
     if index > 0 {
-        CommandButton::new("Back", "", go_to(index - 1)).show(ui, commands);
+        CommandButton::new("Back", "", go_to(index - 1)).show(ui);
     }
     if !is_last {
-        CommandButton::new("Skip the tour", "Esc", end).show(ui, commands);
+        CommandButton::new("Skip the tour", "Esc", end).show(ui);
     }
     at_right(ui, |ui| explain(ui, &format!("{} of {}", index + 1, STEPS.len())));
 }
@@ -223,10 +230,13 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// Creates a step of the tour in a window of this size.
+    /// Creates a step of the tour in a window of this size, with a text field.
     fn step(size: [f32; 2], index: usize) -> Sent<'static> {
-        let mut cards = Tour::default();
-        panel(size, move |ui, commands| cards.ui(&ui.ctx().clone(), index, None, 0, commands))
+        let (mut cards, mut text) = (Tour::default(), String::new());
+        panel(size, move |ui| {
+            ui.text_edit_singleline(&mut text);
+            cards.ui(&ui.ctx().clone(), index, None, 0);
+        })
     }
 
     #[test]
@@ -259,6 +269,11 @@ mod tests {
         press(&mut first, egui::Key::Space);
         assert_eq!(*first.state(), [go_to(1), go_to(1)]);
         assert!(first.ctx.memory(|memory| memory.focused().is_none()));
+        first.get_by_role(egui::accesskit::Role::TextInput).focus();
+        first.run();
+        press(&mut first, egui::Key::Enter);
+        assert!(first.ctx.memory(|memory| memory.focused().is_none()), "typing has ended");
+        assert_eq!(*first.state(), [go_to(1), go_to(1)], "and the tour has not moved");
     }
 
     #[test]
@@ -267,7 +282,7 @@ mod tests {
         let mut cards = Tour::default();
         let mut harness = Harness::builder().with_size(egui::vec2(800.0, 600.0)).build_ui(|ui| {
             let player_commands = player.borrow().commands;
-            cards.ui(&ui.ctx().clone(), 0, None, player_commands, &mut Vec::new());
+            cards.ui(&ui.ctx().clone(), 0, None, player_commands);
         });
         // At the first start, the stage is paused until the first generation is finished.
         player.borrow_mut().hold_at(0.0);
@@ -298,13 +313,10 @@ mod tests {
             let words = STEPS[index].try_it;
             assert!(shows(&harness, &format!("Try it: {words}")), "{index}");
             let is_lesson = matches!(command, Command::Lesson(_));
-            harness.state_mut().push(command);
-            harness.step();
-            harness.state_mut().truncate(2);
+            command.send(&harness.ctx);
+            harness.run();
             let ends = harness.state().contains(&Command::Window(WindowCommand::CloseModal));
             assert_eq!(ends, is_lesson, "{index}");
-            harness.state_mut().clear();
-            harness.run();
             assert!(shows(&harness, &format!("Done: {words}")), "{index}");
         }
     }

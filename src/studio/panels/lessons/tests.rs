@@ -9,7 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 fn panel_of(of: &Lessons) -> Sent<'_> {
-    panel([theme::PANEL_WIDTH, 1600.0], move |ui, commands| lessons(ui, of, commands))
+    panel([theme::PANEL_WIDTH, 1600.0], move |ui| lessons(ui, of))
 }
 
 /// Clicks on `label`, and returns the commands that were sent.

@@ -139,20 +139,26 @@ pub fn actions(library: &Library, chosen: &[&LibraryItem]) -> Vec<LibraryAction>
 }
 
 fn of_run(library: &Library, item: &LibraryItem, folder: &Path) -> [LibraryAction; 2] {
-    let is_over = item.run().is_none_or(|run| run.ended.is_some());
+    let run = item.run();
+    // A run of another engine has no plan, and therefore no number of generations.
+    let is_readable = run.is_some_and(|run| run.generations.is_some());
+    let is_finished = is_readable && run.is_some_and(|run| run.ended.is_some());
     let refusal = if library.is_current(item.place()) {
         Some("This run is open in this window")
     } else if item.problem().is_some() {
         DAMAGED
     } else {
-        is_over.then_some("This run cannot be continued; the reason is given below")
+        (!is_readable).then_some("This run cannot be continued; the reason is given below")
     };
     let go_on = Command::Run(RunCommand::Continue(folder.to_owned()));
-    let go_on_hint = "Continue this run where it stopped; the current run stays saved";
+    let (go_on_label, go_on_hint) = match is_finished {
+        true => ("Open", "Open this finished run, which Watch can continue for more generations"),
+        false => ("Continue", "Continue this run where it stopped; the current run stays saved"),
+    };
     let list_hint = "List the best snake of each generation, to replay and race";
     let list = LibraryActionKind::ShowChampions(folder.to_owned());
     [
-        LibraryAction::new("Continue", go_on_hint, LibraryActionKind::Send(go_on)).unless(refusal),
+        LibraryAction::new(go_on_label, go_on_hint, LibraryActionKind::Send(go_on)).unless(refusal),
         LibraryAction::new("Champions", list_hint, list).unless(replay_refusal(item)),
     ]
 }

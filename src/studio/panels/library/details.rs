@@ -7,13 +7,14 @@ use crate::studio::commands::Command;
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::panels::thumbnail::{sparkline, thumbnail};
 use crate::studio::state::library::LibraryItem;
+use crate::studio::state::lineup::learning;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::decimals::in_percent;
 use crate::studio::ui::text_rows::{explain, problem, row, title_text};
 use crate::studio::ui::theme;
 use snakes_core::save::library::{RunDetails, SavePlace};
 use snakes_core::schema::{Choice, Choices};
-use snakes_core::score::{ExamSuite, SuiteResult};
+use snakes_core::score::{EndingKind, ExamSuite, SuiteResult, Trick};
 use snakes_lab::run::names::{preset_title, with_title};
 
 /// Draws a button for each action. Returns the action that was clicked.
@@ -55,7 +56,7 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
     picture(ui, item);
     ui.add(egui::Label::new(egui::RichText::new(item.name()).strong()).truncate());
     if let Some(reason) = item.problem() {
-        return problem(ui, reason);
+        return problem(ui, &reason.message);
     }
     if item.read.is_none() {
         return explain(ui, "Loading…");
@@ -102,6 +103,9 @@ pub fn details(ui: &mut egui::Ui, item: &LibraryItem, is_open: bool) {
         });
         lines.push(match &run.ended {
             _ if is_open => "Open in this window: the Watch panel controls it".to_owned(),
+            Some(_) if run.generations.is_some() => {
+                "Finished; opened, it can be continued for more generations".to_owned()
+            }
             Some(why) => format!("Cannot be continued: {why}"),
             None => "Can be continued".to_owned(),
         });
@@ -154,6 +158,15 @@ fn exam_table(ui: &mut egui::Ui, exam: &[SuiteResult]) {
             for (name, value) in ways.chain(classes) {
                 row(&format!("    {name}"), &sentence, value);
             }
+            // The line of the suite says how many landed.
+            let others = result.endings.counts.iter().filter(|of| of.kind != EndingKind::Landed);
+            let others = others.map(|of| (of.kind.choice(), of.trials));
+            let tricks = Trick::OPTIONS.iter().zip(result.endings.tricks);
+            let tricks = tricks.filter(|(_, trials)| *trials > 0);
+            let tricks = tricks.map(|(trick, trials)| (trick.choice(), trials));
+            for (Choice { title, sentence, .. }, trials) in others.chain(tricks) {
+                row(&format!("    {title}"), &sentence, format!("{trials} of {}", result.trials));
+            }
         }
     });
 }
@@ -179,33 +192,32 @@ fn picture(ui: &mut egui::Ui, item: &LibraryItem) {
 }
 
 /// Draws the list of the champions of a run.
-pub fn champions(
-    ui: &mut egui::Ui,
-    place: &SavePlace,
-    run: &RunDetails,
-    commands: &mut Vec<Command>,
-) {
+pub fn champions(ui: &mut egui::Ui, place: &SavePlace, run: &RunDetails) {
     let Some(folder) = place.run() else { return };
+    let fitness_of = |generation: u32| {
+        run.best_of_each.get((generation as usize).saturating_sub(1)).copied().flatten()
+    };
     if run.champions.len() > 1 {
-        let hint = "Replay the best of its generations side by side, spread evenly over the run";
-        let (run, generations) = (folder.to_owned(), run.champions.clone());
+        let hint = "Replay the best of its generations side by side; of many, those that show how it improved";
+        let fitness =
+            run.champions.iter().map(|generation| fitness_of(*generation).unwrap_or_default());
+        let chosen = learning(&fitness.collect::<Vec<_>>());
+        let generations = chosen.into_iter().map(|index| run.champions[index]).collect();
+        let run = folder.to_owned();
         let race = Command::Library(LibraryCommand::RaceGenerations { run, generations });
-        CommandButton::new("Race generations", hint, race).show(ui, commands);
+        CommandButton::new("Race generations", hint, race).show(ui);
     }
     let area =
         egui::ScrollArea::vertical().id_salt("champions").max_height(theme::CHAMPIONS_HEIGHT);
     let height = ui.spacing().interact_size.y;
     area.auto_shrink([false, true]).show_rows(ui, height, run.champions.len(), |ui, rows| {
         for generation in run.champions.get(rows).unwrap_or_default() {
-            let index = (*generation as usize).saturating_sub(1);
-            let fitness = run.best_of_each.get(index).copied().flatten();
-            let about = fitness.map(|fitness| run.rewarded.text(fitness));
+            let about = fitness_of(*generation).map(|fitness| run.rewarded.text(fitness));
             let name = format!("Generation {generation}");
-            let response = row(ui, false, &name, &about.unwrap_or_default());
+            let response = row(ui, &name, &about.unwrap_or_default());
             if response.on_hover_text("Click to replay").clicked() {
                 let (run, generation) = (folder.to_owned(), *generation);
-                commands
-                    .push(Command::Library(LibraryCommand::ReplayGeneration { run, generation }));
+                Command::Library(LibraryCommand::ReplayGeneration { run, generation }).send(ui);
             }
         }
     });

@@ -94,7 +94,7 @@ impl LibraryPanel {
         let is_changed = name != renaming.before && end != Some(PromptEnd::Cancelled);
         if is_changed && problem.is_none() {
             let rename = LibraryCommand::Rename { place: renaming.place.clone(), name };
-            self.send(rename);
+            Command::Library(rename).send(ui);
         } else if is_changed && end == Some(PromptEnd::Accepted) {
             // The reason is shown below the list.
             return renaming.prompt.ask_again();
@@ -133,7 +133,7 @@ impl LibraryPanel {
         let is_edited = text.trim() != kept.trim() && !is_restored;
         if response.lost_focus() && is_edited && !is_sent && refusal.is_none() {
             let (place, text) = (item.place().clone(), text.clone());
-            self.send(LibraryCommand::SetNotes { place, text });
+            Command::Library(LibraryCommand::SetNotes { place, text }).send(ui);
             is_sent = true;
         }
         // After the command is sent, the typed text is shown until the new notes are read.
@@ -144,10 +144,10 @@ impl LibraryPanel {
 
     /// Stores notes that were being edited when another save was selected. The field may then be gone before it loses
     /// the focus.
-    pub(super) fn keep_notes_of_others(&mut self, shown: Option<&LibraryItem>) {
+    pub(super) fn keep_notes_of_others(&mut self, ui: &egui::Ui, shown: Option<&LibraryItem>) {
         let is_other = |field: &mut NotesField| Some(&field.place) != shown.map(LibraryItem::place);
         if let Some(NotesField { place, text, is_sent: false }) = self.notes.take_if(is_other) {
-            self.send(LibraryCommand::SetNotes { place, text });
+            Command::Library(LibraryCommand::SetNotes { place, text }).send(ui);
         }
     }
 
@@ -178,7 +178,7 @@ impl LibraryPanel {
             let is_accepted = end == Some(PromptEnd::Accepted) || ok.clicked();
             if is_accepted && has_text {
                 let paths = vec![PathBuf::from(prompt.trimmed())];
-                self.sent.push(Command::File(FileCommand::Answer(question.clone(), paths)));
+                Command::File(FileCommand::Answer(question.clone(), paths)).send(ui);
                 is_closed = true;
             } else if is_accepted {
                 prompt.ask_again();

@@ -20,18 +20,17 @@ use crate::studio::ui::theme;
 impl LibraryPanel {
     /// Draws the title, the search field and the sort order.
     pub(super) fn header(&mut self, ui: &mut egui::Ui, library: &Library, history: &UndoHistory) {
-        let commands = &mut self.sent;
         title_and(ui, "Library", |ui| {
             let hint = format!("Read the folder again: {}", library.saves.path().display());
             let refresh = Command::Library(LibraryCommand::Refresh);
-            CommandButton::small("Refresh", hint, refresh).show(ui, commands);
+            CommandButton::new("Refresh", hint, refresh).small().show(ui);
             let hint =
                 "Copy champions or a run into the library; you can also drop files onto the window";
             let import = Command::File(FileCommand::Ask(FileQuestion::Import));
-            CommandButton::small("Import", hint, import).show(ui, commands);
-            undo_buttons(ui, history, commands);
+            CommandButton::new("Import", hint, import).small().show(ui);
+            undo_buttons(ui, history);
         });
-        batch_progress(ui, library, commands);
+        batch_progress(ui, library);
         let field = text_field(&mut self.search)
             .hint_text("Search name, notes, preset, controller, \"damaged\"")
             .desired_width(f32::INFINITY);
@@ -102,14 +101,12 @@ impl LibraryPanel {
 }
 
 /// Draws the progress of operations on many saves and of an exam, with buttons that cancel them.
-fn batch_progress(ui: &mut egui::Ui, library: &Library, commands: &mut Vec<Command>) {
+fn batch_progress(ui: &mut egui::Ui, library: &Library) {
     let of_files = "Stop after the current file. Undo reverses the finished part";
     let of_exam = "Stop the exam. The results of finished champions are kept";
     let files = library.under_way().map(|progress| (progress, of_files));
     let exam = library.exam_under_way().map(|progress| (progress, of_exam));
     for ((words, share), hint) in files.chain(exam) {
-        if cancellable_progress(ui, hint, share, &words) {
-            commands.push(Command::Library(LibraryCommand::Cancel));
-        }
+        cancellable_progress(ui, (hint, Command::Library(LibraryCommand::Cancel)), share, &words);
     }
 }

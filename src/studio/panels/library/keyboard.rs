@@ -28,7 +28,7 @@ impl LibraryPanel {
             }
             if key == Press::Space {
                 // The list has no use for Space, and a click into it must not take Space from the stage.
-                self.sent.push(Command::Player(PlayerCommand::Toggle));
+                Command::Player(PlayerCommand::Toggle).send(ui);
                 continue;
             }
             if key == Press::A {
@@ -42,10 +42,10 @@ impl LibraryPanel {
             };
             let (wanted, refusal) = (Some(action.act.clone()), action.refusal);
             match refusal {
-                None => self.act(wanted, library),
+                None => self.act(ui, wanted, library),
                 // For a disabled action, its reason is shown.
                 Some(why) if matches!(key, Press::F2 | Press::Delete) => {
-                    self.sent.push(Command::Notify(format!("{why}.")));
+                    Command::Notify(format!("{why}.")).send(ui);
                 }
                 Some(_) => {}
             }

@@ -72,27 +72,19 @@ pub(super) struct LibraryPanel {
     height: f32,
     /// Height of the details below the list in the previous frame, in points.
     details_height: f32,
-    /// Commands of the user in this frame.
-    sent: Vec<Command>,
 }
 
 impl LibraryPanel {
-    /// Draws the panel and collects the user's commands.
-    pub fn ui(
-        &mut self,
-        ui: &mut egui::Ui,
-        library: &Library,
-        history: &UndoHistory,
-        commands: &mut Vec<Command>,
-    ) {
+    /// Draws the panel and sends the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, library: &Library, history: &UndoHistory) {
         if !library.is_open() {
-            self.send(LibraryCommand::Refresh);
+            Command::Library(LibraryCommand::Refresh).send(ui);
         }
         let available = ui.available_height();
         let gaps = ui.spacing().item_spacing.y * 2.0;
         let above = ui.scope(|ui| self.header(ui, library, history)).response.rect.height() + gaps;
         self.follow(library);
-        self.take_requests(library);
+        self.take_requests(ui, library);
         let now_s = ui.input(|input| input.time);
         if self.order.update(library, &self.search, self.sort, now_s) {
             // An action must never concern a save that the search hides.
@@ -108,11 +100,6 @@ impl LibraryPanel {
         let details = egui::ScrollArea::vertical().id_salt("details").auto_shrink([false, true]);
         let footer = details.show(ui, |ui| self.footer(ui, library));
         self.details_height = footer.content_size.y;
-        commands.append(&mut self.sent);
-    }
-
-    fn send(&mut self, command: LibraryCommand) {
-        self.sent.push(Command::Library(command));
     }
 
     /// Removes entries that do not exist any more from the selection, and selects new ones.
@@ -135,7 +122,7 @@ impl LibraryPanel {
     }
 
     /// Processes requests that come from the menu or from failed file dialogs.
-    fn take_requests(&mut self, library: &Library) {
+    fn take_requests(&mut self, ui: &egui::Ui, library: &Library) {
         let (count, unanswered) = &library.unanswered;
         if let Some((question, reason)) = unanswered
             && *count != self.unanswered
@@ -144,7 +131,7 @@ impl LibraryPanel {
             let exports = || library.saves.path().join(EXPORTS).to_string_lossy().into_owned();
             let suggestion = match question {
                 FileQuestion::Export(_) => exports(),
-                FileQuestion::Share(format, name) => {
+                FileQuestion::Share(format, name, _) => {
                     let name = format!("{name}.{}", format.info().ending);
                     library.saves.path().join(name).to_string_lossy().into_owned()
                 }
@@ -158,9 +145,9 @@ impl LibraryPanel {
             self.export_requests = library.export_requests;
             if self.selection.chosen.is_empty() {
                 let text = "Select what to export in the library first.".to_owned();
-                self.sent.push(Command::Notify(text));
+                Command::Notify(text).send(ui);
             } else {
-                self.act(Some(LibraryActionKind::Export), library);
+                self.act(ui, Some(LibraryActionKind::Export), library);
             }
         }
     }
@@ -241,7 +228,7 @@ impl LibraryPanel {
         });
         self.offset = output.state.offset.y;
         if visible != self.visible && !visible.is_empty() {
-            self.send(LibraryCommand::LoadFirst(visible.clone()));
+            Command::Library(LibraryCommand::LoadFirst(visible.clone())).send(ui);
         }
         self.visible = visible;
     }
@@ -277,40 +264,36 @@ impl LibraryPanel {
             self.selection.only(place);
         }
         if response.double_clicked() {
-            self.send(LibraryCommand::Replay(place.clone()));
+            Command::Library(LibraryCommand::Replay(place.clone())).send(ui);
         }
         let mut wanted = None;
         response.context_menu(|ui| {
             self.update_actions(library);
             wanted = details::menu(ui, &self.actions.1);
         });
-        self.act(wanted, library);
-    }
-
-    /// Returns the items of the selected saves.
-    fn chosen<'a>(&self, library: &'a Library) -> Vec<&'a LibraryItem> {
-        self.selection.chosen.iter().filter_map(|place| library.item(place)).collect()
+        self.act(ui, wanted, library);
     }
 
     /// Recomputes the actions only after a change, because many saves may be selected.
     fn update_actions(&mut self, library: &Library) {
         let wanted = Some((self.selection.changes, library.revision));
         if self.actions.0 != wanted {
-            self.actions = (wanted, actions(library, &self.chosen(library)));
+            let chosen = self.selection.chosen.iter().filter_map(|place| library.item(place));
+            self.actions = (wanted, actions(library, &chosen.collect::<Vec<_>>()));
         }
     }
 
-    fn act(&mut self, wanted: Option<LibraryActionKind>, library: &Library) {
+    fn act(&mut self, ui: &egui::Ui, wanted: Option<LibraryActionKind>, library: &Library) {
         match wanted {
             None => {}
-            Some(LibraryActionKind::Send(command)) => self.sent.push(command),
+            Some(LibraryActionKind::Send(command)) => command.send(ui),
             Some(LibraryActionKind::Rename(place)) => {
                 self.renaming = library.item(&place).map(RenameField::new);
                 self.scroll_to = Some(place);
             }
             Some(LibraryActionKind::Export) => {
                 let places = self.selection.chosen.iter().cloned().collect();
-                self.sent.push(Command::File(FileCommand::Ask(FileQuestion::Export(places))));
+                Command::File(FileCommand::Ask(FileQuestion::Export(places))).send(ui);
             }
             Some(LibraryActionKind::ShowChampions(run)) => {
                 let is_listed = self.listed_run.as_ref() == Some(&run);
@@ -339,15 +322,15 @@ impl LibraryPanel {
         self.path_field(ui);
         let only = self.selection.chosen.iter().next().filter(|_| chosen == 1);
         let only = only.and_then(|place| library.item(place));
-        self.keep_notes_of_others(only);
+        self.keep_notes_of_others(ui, only);
         if let Some(item) = only {
             details::details(ui, item, library.is_current(item.place()));
             self.notes(ui, item);
             let is_listed = item.place().run() == self.listed_run.as_deref();
             if let Some(run) = item.run().filter(|_| is_listed) {
-                details::champions(ui, item.place(), run, &mut self.sent);
+                details::champions(ui, item.place(), run);
             }
         }
-        self.act(wanted, library);
+        self.act(ui, wanted, library);
     }
 }

@@ -4,35 +4,21 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 use crate::studio::state::library::{Library, LibraryItem};
+use snakes_core::schema::named_values;
 
-/// A column by which the list can be sorted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SortKey {
-    /// Name of the save.
-    Name,
-    /// Part of the way to the landing that a champion, or the best of a run, covered.
-    Way,
-    /// Name of the preset of a champion or run.
-    Preset,
-    /// Generation of a champion, or number of generations of a run.
-    Generation,
-    /// Time of the last change of the save.
-    Date,
-}
-
-impl SortKey {
-    /// All sort keys, in the order of the columns.
-    pub const ALL: [Self; 5] = [Self::Name, Self::Way, Self::Preset, Self::Generation, Self::Date];
-
-    /// Returns the title of the column.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Name => "Name",
-            Self::Way => "Way",
-            Self::Preset => "Preset",
-            Self::Generation => "Generation",
-            Self::Date => "Date",
-        }
+named_values! {
+    /// A column by which the list can be sorted, in the order of the columns. Its name is its title.
+    pub enum SortKey {
+        /// Name of the save.
+        Name = "Name";
+        /// Part of the way to the landing that a champion, or the best of a run, covered.
+        Way = "Way";
+        /// Name of the preset of a champion or run.
+        Preset = "Preset";
+        /// Generation of a champion, or number of generations of a run.
+        Generation = "Generation";
+        /// Time of the last change of the save.
+        Date = "Date";
     }
 }
 

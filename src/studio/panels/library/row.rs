@@ -9,6 +9,7 @@ use crate::studio::panels::thumbnail::thumbnail;
 use crate::studio::state::library::LibraryItem;
 use crate::studio::ui::accessible::named_selected;
 use crate::studio::ui::theme;
+use snakes_core::save::library::EntryProblem;
 
 /// Draws a row and returns its response. The row may be selected, and may have the keyboard cursor of the focused list.
 pub fn row(
@@ -54,7 +55,7 @@ pub fn row(
         narrow(ui, rect, item, is_chosen)
     }
     match item.problem() {
-        Some(problem) => response.on_hover_text(problem),
+        Some(problem) => response.on_hover_text(problem.message.as_str()),
         None => response,
     }
 }
@@ -106,7 +107,7 @@ fn narrow(ui: &egui::Ui, rect: Rect, item: &LibraryItem, is_chosen: bool) {
     let way = write(ui, above, Align::Max, &item.way_text(" of the way"), palette.text, false);
     let name = above.with_max_x(above.right() - way - theme::GAP);
     write(ui, name, Align::Min, item.name(), palette.text, false);
-    if let Some(words) = item.problem_words() {
+    if let Some(EntryProblem { words, .. }) = item.problem() {
         write(ui, below, Align::Min, words, problem, true);
         return;
     }
@@ -120,7 +121,7 @@ fn wide(ui: &egui::Ui, rect: Rect, item: &LibraryItem, is_chosen: bool) {
     let palette = theme::of(ui);
     let [weak, problem] = text_colors(palette, is_chosen);
     write(ui, column(rect, SortKey::Name), Align::Min, item.name(), palette.text, false);
-    if let Some(words) = item.problem_words() {
+    if let Some(EntryProblem { words, .. }) = item.problem() {
         let rest = column(rect, SortKey::Way).union(column(rect, SortKey::Generation));
         write(ui, rest, Align::Min, words, problem, false);
     }

@@ -12,7 +12,9 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::*;
 use crate::studio::commands::{PlanCommand, PlayerCommand, RunCommand};
-use crate::studio::panels::testing::{Sent as Test, clicked, shows, type_into};
+use crate::studio::panels::testing::{
+    Sent as Test, clicked, panel_at_60_hz, sent_by, shows, type_into,
+};
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::EntryNotes;
@@ -85,31 +87,22 @@ fn library() -> Library {
 
 fn harness(library: Library, size: [f32; 2]) -> Test<'static> {
     let mut panel = LibraryPanel::default();
-    // Two clicks count as a double click only if the frames are short.
-    let builder = Harness::builder().with_size(egui::Vec2::from(size)).with_step_dt(1.0 / 60.0);
-    let mut harness = builder.build_ui_state(
-        move |ui, commands: &mut Vec<Command>| {
-            panel.ui(ui, &library, &UndoHistory::default(), commands)
-        },
-        Vec::new(),
-    );
-    harness.run();
+    let draw = move |ui: &mut egui::Ui| panel.ui(ui, &library, &UndoHistory::default());
+    let mut harness = panel_at_60_hz(size, draw);
     harness.state_mut().clear();
     harness
 }
 
 /// Calls `act`, and returns the commands to the library that were sent afterwards.
 fn sent(library: Library, act: impl FnOnce(&mut Test<'_>)) -> Vec<LibraryCommand> {
-    let mut harness = harness(library, [420.0, 800.0]);
-    act(&mut harness);
-    harness.run();
-    let commands = harness.state().iter().filter_map(|command| match command {
-        Command::Library(request) => Some(request.clone()),
+    let commands = sent_by(harness(library, [420.0, 800.0]), act);
+    let requests = commands.into_iter().filter_map(|command| match command {
+        Command::Library(request) => Some(request),
         // The reasons of refused actions are not compared.
         Command::Notify(_) => None,
         other => panic!("{other:?}"),
     });
-    commands.collect()
+    requests.collect()
 }
 
 /// Selects the row whose label starts with this name.
@@ -161,6 +154,24 @@ fn impossible_actions_are_disabled() {
             clicked(harness, button);
         });
         assert_eq!(found, [], "{button} of {row}");
+    }
+}
+
+#[test]
+fn a_finished_run_is_opened_unless_it_is_of_another_engine() {
+    for (generations, is_refused) in [(Some(10), false), (None, true)] {
+        let EntryDetails::Run(run) = stopped_run() else { panic!("a run") };
+        let ended = Some("of engine 2".to_owned());
+        let ended = EntryDetails::Run(Box::new(RunDetails { generations, ended, ..*run }));
+        let saves = library_of(vec![(SavePlace::Run(run_folder()), 6, Ok(ended))]);
+        let mut harness = harness(saves, [420.0, 900.0]);
+        select(&mut harness, RUN);
+        let button = if is_refused { "Continue" } else { "Open" };
+        assert_eq!(harness.get_by_label(button).accesskit_node().is_disabled(), is_refused);
+        if !is_refused {
+            clicked(&mut harness, button);
+            assert_eq!(*harness.state(), [Command::Run(RunCommand::Continue(run_folder()))]);
+        }
     }
 }
 

@@ -32,24 +32,18 @@ pub(super) struct MachinesPanel {
 const SERVER: &str = "nats-server -js";
 
 impl MachinesPanel {
-    /// Draws the panel and collects the user's commands.
-    pub fn ui(
-        &mut self,
-        ui: &mut egui::Ui,
-        link: &MachinesLink,
-        run: &CurrentRun,
-        commands: &mut Vec<Command>,
-    ) {
+    /// Draws the panel and sends the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, link: &MachinesLink, run: &CurrentRun) {
         title(ui, "Machines");
         explain(
             ui,
             "Other computers can evaluate snakes of your run, too. No result depends on it.",
         );
-        self.address(ui, link, commands);
+        self.address(ui, link);
         match &link.state {
             LinkState::Off => {
                 state(ui, theme::of(ui).text_weak, "Not connected");
-                first_steps(ui, commands);
+                first_steps(ui);
             }
             LinkState::Connecting(reason) => {
                 ui.horizontal(|ui| {
@@ -61,14 +55,14 @@ impl MachinesPanel {
             LinkState::Failed(reason) => {
                 state(ui, theme::of(ui).problem, "Not connected");
                 problem(ui, reason);
-                first_steps(ui, commands);
+                first_steps(ui);
             }
-            LinkState::Connected(known) => connected(ui, link, known, run, commands),
+            LinkState::Connected(known) => connected(ui, link, known, run),
         }
     }
 
     /// Draws the address field and the button beside it.
-    fn address(&mut self, ui: &mut egui::Ui, link: &MachinesLink, commands: &mut Vec<Command>) {
+    fn address(&mut self, ui: &mut egui::Ui, link: &MachinesLink) {
         let is_off = matches!(link.state, LinkState::Off | LinkState::Failed(_));
         let mut text = self.text.clone().unwrap_or_else(|| link.address.to_owned());
         let (mut is_asked, mut is_left) = (false, false);
@@ -108,12 +102,12 @@ impl MachinesPanel {
             });
         });
         if is_left {
-            commands.push(Command::Machines(MachinesCommand::Disconnect));
+            Command::Machines(MachinesCommand::Disconnect).send(ui);
         } else if is_asked {
             match checked(&text) {
                 Ok(url) => {
                     (self.text, self.problem) = (None, None);
-                    commands.push(Command::Machines(MachinesCommand::Connect(url)));
+                    Command::Machines(MachinesCommand::Connect(url)).send(ui);
                 }
                 Err(problem) => self.problem = Some(problem),
             }
@@ -133,12 +127,12 @@ fn state(ui: &mut egui::Ui, color: egui::Color32, text: &str) {
 }
 
 /// Draws instructions for the first connection.
-fn first_steps(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+fn first_steps(ui: &mut egui::Ui) {
     title(ui, "How to begin");
     ui.label(
         "1. Start a NATS server on one computer. The command comes with the package nats-server.",
     );
-    command_line(ui, SERVER, commands);
+    command_line(ui, SERVER);
     ui.label("2. Type that computer's address above, and choose Connect. On this computer it is nats://127.0.0.1:4222.");
     ui.label(
         "3. Start workers on other computers. The command appears here once you are connected.",
@@ -151,13 +145,7 @@ fn first_steps(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
 }
 
 /// Draws what is known about a connected server.
-fn connected(
-    ui: &mut egui::Ui,
-    link: &MachinesLink,
-    known: &KnownServer,
-    run: &CurrentRun,
-    commands: &mut Vec<Command>,
-) {
+fn connected(ui: &mut egui::Ui, link: &MachinesLink, known: &KnownServer, run: &CurrentRun) {
     let palette = theme::of(ui);
     match (&known.problem, &known.machines) {
         (Some(reason), _) => {
@@ -183,7 +171,7 @@ fn connected(
         title(ui, heading);
         explain(ui, &format!("Type this on {other}, where this program is installed:"));
         let address = &link.address;
-        command_line(ui, &format!("snakes worker --nats {address}"), commands);
+        command_line(ui, &format!("snakes worker --nats {address}"));
         let is_own =
             |part: &str| ["//127.", "//localhost", "//[::1]"].iter().any(|own| part.contains(own));
         if address.split(',').all(is_own) {
@@ -193,7 +181,7 @@ fn connected(
                  network in its place.",
             );
         }
-        queues(ui, address, known, machines, commands);
+        queues(ui, address, known, machines);
     }
 }
 

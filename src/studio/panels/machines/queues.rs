@@ -5,19 +5,12 @@ use std::collections::BTreeSet;
 use bevy_egui::egui;
 
 use super::rows::{command_line, entry};
-use crate::studio::commands::Command;
 use crate::studio::state::machines::KnownServer;
 use crate::studio::ui::text_rows::{explain, problem, title, weak};
 use snakes_cluster::Machines;
 
 /// Draws the runs on the server, that of this window first.
-pub(super) fn queues(
-    ui: &mut egui::Ui,
-    address: &str,
-    known: &KnownServer,
-    machines: &Machines,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn queues(ui: &mut egui::Ui, address: &str, known: &KnownServer, machines: &Machines) {
     title(ui, "Runs on the server");
     let names: BTreeSet<&String> = machines.runs.keys().chain(machines.queues.keys()).collect();
     let is_own = |name: &&String| known.own_run.as_ref() == Some(*name);
@@ -29,7 +22,7 @@ pub(super) fn queues(
         queue(ui, name, own.contains(name), machines);
         if !machines.runs.contains_key(*name) {
             explain(ui, "No program waits for it any more. This removes what is left of it:");
-            command_line(ui, &format!("snakes machines --nats {address} --purge {name}"), commands);
+            command_line(ui, &format!("snakes machines --nats {address} --purge {name}"));
         }
     }
 }

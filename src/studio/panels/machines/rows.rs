@@ -35,7 +35,7 @@ pub(super) fn entry(
 }
 
 /// Draws a command to type, with a button that copies it.
-pub(super) fn command_line(ui: &mut egui::Ui, command: &str, commands: &mut Vec<Command>) {
+pub(super) fn command_line(ui: &mut egui::Ui, command: &str) {
     let frame = egui::Frame::new()
         .fill(theme::of(ui).field)
         .corner_radius(4)
@@ -52,7 +52,7 @@ pub(super) fn command_line(ui: &mut egui::Ui, command: &str, commands: &mut Vec<
                 let name = format!("Copy: {command}");
                 if named(response, egui::WidgetType::Button, &name).clicked() {
                     ui.ctx().copy_text(command.to_owned());
-                    commands.push(Command::Notify("Command copied.".to_owned()));
+                    Command::Notify("Command copied.".to_owned()).send(ui);
                 }
             });
         });

@@ -12,22 +12,16 @@ use snakes_core::{ENGINE_VERSION, Processors};
 const URL: &str = "nats://192.168.1.5:4222";
 const PROOF: &str = "0123456789abcdef";
 
-/// The machines panel, and the commands that it sent.
-type State = (MachinesPanel, Vec<Command>);
-
-fn panel(link: MachinesLink, width: f32) -> Harness<'static, State> {
-    let run = prepared_run();
-    let draw = move |ui: &mut egui::Ui, (panel, commands): &mut State| {
-        panel.ui(ui, &link, &run, commands);
-    };
+fn panel(link: MachinesLink, width: f32) -> Harness<'static> {
+    let (run, mut panel) = (prepared_run(), MachinesPanel::default());
     let builder = Harness::builder().with_size(egui::vec2(width, 1200.0));
-    let mut harness = builder.build_ui_state(draw, State::default());
+    let mut harness = builder.build_ui(move |ui| panel.ui(ui, &link, &run));
     // A spinner is animated without end, so only a few frames are run.
     harness.run_steps(3);
     harness
 }
 
-fn narrow(link: MachinesLink) -> Harness<'static, State> {
+fn narrow(link: MachinesLink) -> Harness<'static> {
     panel(link, theme::PANEL_WIDTH)
 }
 
@@ -83,11 +77,11 @@ fn without_a_connection_it_explains_the_first_steps_and_connects() {
     let mut panel = narrow(MachinesLink::default());
     assert_shows(&panel, &["Not connected", "1. Start a NATS server", SERVER, "3. Start workers"]);
     click(&mut panel, "Connect");
-    assert_eq!(panel.state().1, [], "there is no address yet");
+    assert_eq!(Command::take_sent(&panel.ctx), [], "there is no address yet");
     type_into(&mut panel, "Server", "192.168.1.5:4222");
     click(&mut panel, "Connect");
     let connect = MachinesCommand::Connect(URL.to_owned());
-    assert_eq!(panel.state().1, [Command::Machines(connect)]);
+    assert_eq!(Command::take_sent(&panel.ctx), [Command::Machines(connect)]);
 }
 
 #[test]
@@ -96,7 +90,7 @@ fn the_last_address_is_offered_and_enter_connects() {
     click(&mut panel, "Server");
     press(&mut panel, egui::Key::Enter);
     let connect = MachinesCommand::Connect(URL.to_owned());
-    assert_eq!(panel.state().1, [Command::Machines(connect)]);
+    assert_eq!(Command::take_sent(&panel.ctx), [Command::Machines(connect)]);
 }
 
 #[test]
@@ -104,25 +98,24 @@ fn an_address_with_a_password_is_refused_and_the_password_is_in_no_message() {
     let mut panel = narrow(MachinesLink::default());
     type_into(&mut panel, "Server", "nats://ann:secret@a");
     click(&mut panel, "Connect");
-    assert_eq!(panel.state().1, []);
+    assert_eq!(Command::take_sent(&panel.ctx), []);
     assert!(shows(&panel, "without user name and password"));
     assert!(!shows(&panel, "secret"));
 }
 
 #[test]
-fn connecting_can_be_cancelled() {
-    let mut panel = narrow(MachinesLink::of_test(URL, LinkState::Connecting(None)));
-    assert!(shows(&panel, "Connecting to nats://192.168.1.5:4222"));
-    panel.get_by_label("Cancel").click();
-    panel.run_steps(3);
-    assert_eq!(panel.state().1, [Command::Machines(MachinesCommand::Disconnect)]);
-}
-
-#[test]
-fn f3_a_server_without_room_for_the_window_is_named_while_it_waits() {
+fn f3_connecting_can_be_cancelled_and_a_server_without_room_for_the_window_is_named_meanwhile() {
     let problem = "nats://a: cannot connect: the server says: maximum connections exceeded";
-    let panel = narrow(MachinesLink::of_test(URL, LinkState::Connecting(Some(problem.to_owned()))));
-    assert_shows(&panel, &["Connecting to nats://192.168.1.5:4222", problem, "Cancel"]);
+    for reason in [None, Some(problem.to_owned())] {
+        let waits = LinkState::Connecting(reason.clone());
+        let mut panel = narrow(MachinesLink::of_test(URL, waits));
+        assert_shows(&panel, &["Connecting to nats://192.168.1.5:4222"]);
+        assert_eq!(shows(&panel, problem), reason.is_some());
+        panel.get_by_label("Cancel").click();
+        panel.run_steps(3);
+        let cancel = Command::Machines(MachinesCommand::Disconnect);
+        assert_eq!(Command::take_sent(&panel.ctx), [cancel]);
+    }
 }
 
 #[test]
@@ -156,7 +149,7 @@ fn without_workers_it_shows_the_command_to_type_and_copies_it() {
         &["Connected: no workers", "No worker is there yet", &command, "Disconnect"],
     );
     click(&mut panel, &format!("Copy: {command}"));
-    assert_eq!(panel.state().1, [Command::Notify("Command copied.".to_owned())]);
+    assert_eq!(Command::take_sent(&panel.ctx), [Command::Notify("Command copied.".to_owned())]);
     assert!(!shows(&panel, "works on this computer only"));
 }
 

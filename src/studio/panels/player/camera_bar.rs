@@ -6,13 +6,12 @@ use bevy_egui::egui::containers::menu::{MenuButton, MenuConfig};
 use super::stage_card::CardStates;
 use crate::studio::commands::actions::{Situation, actions};
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::commands::screenshot_area::ScreenshotArea;
-use crate::studio::commands::{Command, ViewCommand, WindowCommand};
+use crate::studio::commands::{Command, ScreenshotArea, ViewCommand, WindowCommand};
 use crate::studio::panels::help::menu::IsOn;
 use crate::studio::scene::quality::StageQuality;
 use crate::studio::ui::buttons::{CommandButton, command_box};
 
-/// Draws the camera bar, and collects the user's commands. A bar that `is_narrow` lacks what the View menu has, too.
+/// Draws the camera bar, and sends the user's commands. A bar that `is_narrow` lacks what the View menu has, too.
 pub(crate) fn view_bar(
     ui: &mut egui::Ui,
     camera_mode: CameraMode,
@@ -20,23 +19,13 @@ pub(crate) fn view_bar(
     is_on: IsOn<'_>,
     quality: &StageQuality,
     cards: &mut CardStates,
-    commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         for choice in CameraMode::ALL {
-            let hint = match choice {
-                CameraMode::Follow => "Follow the snake, or all of them in a race (F, Home)",
-                CameraMode::Side => "Follow from the side (C: next camera)",
-                CameraMode::Top => "Follow from above (C: next camera)",
-                CameraMode::Free => {
-                    "Keep the camera where it is (F). Double-click a place to centre it"
-                }
-            };
-            let button = ui.selectable_label(camera_mode == choice, choice.name());
-            if button.on_hover_text(hint).clicked() {
-                commands.push(Command::View(ViewCommand::SetCamera(choice)));
-            }
+            let button = egui::Button::selectable(camera_mode == choice, choice.name());
+            let set = Command::View(ViewCommand::SetCamera(choice));
+            CommandButton::of(button, choice.hint(), set).show(ui);
         }
         ui.separator();
         let stays = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
@@ -44,39 +33,39 @@ pub(crate) fn view_bar(
             for action in actions().iter().filter(|action| action.shows_on_stage()) {
                 let Some(command) = action.command(Situation::default()) else { continue };
                 let is_shown = is_on(&command).unwrap_or(false);
-                command_box(ui, is_shown, (action.name, action.hint), command, commands);
+                command_box(ui, is_shown, (action.name, action.hint), command);
             }
             let closed = egui::Button::new("Closed cards again");
-            let closed = ui.add_enabled(cards.has_closed(), closed);
+            let closed = ui.add_enabled(!cards.closed.is_empty(), closed);
             if closed.on_disabled_hover_text("No card over the stage is closed").clicked() {
-                cards.open_all();
+                cards.closed.clear();
             }
             ui.separator();
-            quality_choice(ui, quality, commands);
+            quality_choice(ui, quality);
         });
         let theme = Command::View(ViewCommand::ToggleTheme);
         let (name, hint) = match is_on(&theme) {
             Some(true) => ("Light", "Switch to the light theme"),
             _ => ("Dark", "Switch to the dark theme"),
         };
-        CommandButton::new(name, hint, theme).show(ui, commands);
+        CommandButton::new(name, hint, theme).show(ui);
         let larger = Command::Window(WindowCommand::Enlarge);
         let is_larger = is_on(&larger).unwrap_or(false);
         if !is_narrow {
             let button = egui::Button::new("Larger").selected(is_larger);
             let hint =
                 "All texts a quarter larger, for a projector; after the largest, the usual size";
-            CommandButton::of(button, hint, larger).show(ui, commands);
+            CommandButton::of(button, hint, larger).show(ui);
         }
         let hint = "Save a picture of the stage (P) or of the whole window (Shift P)";
         if ui.button("Picture").on_hover_text(hint).clicked() {
-            commands.push(Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)));
+            Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage)).send(ui);
         }
     });
 }
 
 /// Draws the choice of the picture's quality.
-fn quality_choice(ui: &mut egui::Ui, quality: &StageQuality, commands: &mut Vec<Command>) {
+fn quality_choice(ui: &mut egui::Ui, quality: &StageQuality) {
     ui.label("Picture quality (A: next)");
     let automatic = (None, "automatic", "Suits the device and the time that a frame takes");
     let steps = quality.offered().iter().map(|step| (Some(*step), step.name(), step.hint()));
@@ -86,7 +75,7 @@ fn quality_choice(ui: &mut egui::Ui, quality: &StageQuality, commands: &mut Vec<
             _ => name.to_owned(),
         };
         if ui.radio(quality.chosen == choice, name).on_hover_text(hint).clicked() {
-            commands.push(Command::View(ViewCommand::SetQuality(choice)));
+            Command::View(ViewCommand::SetQuality(choice)).send(ui);
         }
     }
 }
@@ -101,8 +90,8 @@ pub(crate) mod tests {
     pub(in crate::studio::panels) fn switched_off_bar() -> Sent<'static> {
         let mut cards = CardStates::default();
         let quality = StageQuality::default();
-        panel([900.0, 600.0], move |ui, commands| {
-            view_bar(ui, CameraMode::Follow, false, &|_| None, &quality, &mut cards, commands);
+        panel([900.0, 600.0], move |ui| {
+            view_bar(ui, CameraMode::Follow, false, &|_| None, &quality, &mut cards);
         })
     }
 

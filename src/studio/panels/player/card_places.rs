@@ -28,10 +28,10 @@ pub(super) struct CardRoom<'a> {
 }
 
 impl CardRoom<'_> {
-    /// Returns a place for a card of this size that covers neither the selected limb nor, if possible, any other limb.
-    /// If several places are equally good, the one nearest to the preferred corner is chosen.
+    /// Returns the place for a card of this size that is nearest to its preferred corner. With a selected limb, it is the nearest that covers
+    /// neither this limb nor, if possible, any other limb.
     pub fn place(&self, size: Vec2) -> Rect {
-        let cost = |place: &Rect| self.covered(place, FROM_LIMBS);
+        let cost = |place: &Rect| if self.selected.is_some() { self.covered(place) } else { 0.0 };
         let best = self.candidates(size).into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
         best.unwrap_or_else(|| self.corner.align_size_within_rect(size, self.room))
     }
@@ -46,15 +46,10 @@ impl CardRoom<'_> {
         nearest.filter(|place| distance(place) < GAP)
     }
 
-    /// Returns whether a card would cover much less at `place` than at `now`.
-    pub fn is_much_better(&self, place: &Rect, now: &Rect) -> bool {
-        self.covered(place, 0.0) < self.covered(now, 0.0) / 2.0
-    }
-
-    /// Returns the area of the limbs that a card would cover, in square points. That of the selected limb counts [`SELECTED`] times.
-    fn covered(&self, place: &Rect, margin: f32) -> f32 {
+    /// Returns the area of the limbs that a card would cover or touch, in square points. That of the selected limb counts [`SELECTED`] times.
+    fn covered(&self, place: &Rect) -> f32 {
         let of = |limb: &Rect| {
-            let common = place.expand(margin).intersect(*limb);
+            let common = place.expand(FROM_LIMBS).intersect(*limb);
             if common.is_positive() { common.area() } else { 0.0 }
         };
         self.all.iter().map(of).sum::<f32>() + self.selected.as_ref().map_or(0.0, of) * SELECTED
@@ -169,19 +164,15 @@ mod tests {
     }
 
     #[test]
-    fn the_card_covers_no_limb_where_there_is_room_and_stays_while_it_does_not() {
+    fn the_card_covers_no_limb_where_there_is_room_and_is_found_again_where_it_is() {
         let limbs = snake();
         let small = vec2(310.0, 160.0);
         let lower_right = around(&limbs, 0).place(small);
         assert_eq!(lower_right.max, STAGE.shrink(12.0).max);
         assert!(limbs.iter().all(|limb| !limb.intersects(lower_right)));
         let upper_left = rect(397.0, 84.0, 707.0, 244.0);
-        let down = limbs.iter().map(|limb| limb.translate(vec2(60.0, 100.0))).collect::<Vec<_>>();
-        for (limbs, moves) in [(&down, false), (&limbs, true)] {
-            let room = around(limbs, 0);
-            assert_eq!(room.as_at(small, upper_left.translate(vec2(1.0, 2.0))), Some(upper_left));
-            assert_eq!(room.is_much_better(&room.place(small), &upper_left), moves);
-        }
+        let now = upper_left.translate(vec2(1.0, 2.0));
+        assert_eq!(around(&limbs, 0).as_at(small, now), Some(upper_left));
     }
 
     #[test]
@@ -196,10 +187,8 @@ mod tests {
             (Some(rect(702.0, 84.0, 1012.0, 334.0)), vec2(364.0, 300.0)),
         ] {
             let room = messages_room(STAGE, BAR, card, &[], size);
-            let drawn = Rect::from_min_size(
-                room.max - vec2(size.x.min(room.width()), size.y),
-                vec2(size.x.min(room.width()), size.y),
-            );
+            let size = vec2(size.x.min(room.width()), size.y);
+            let drawn = Rect::from_min_size(room.max - size, size);
             assert!(drawn.top() >= BAR.bottom(), "{card:?}: {drawn}");
             assert!(
                 card.is_none_or(|card| !card.shrink(0.5).intersects(drawn)),

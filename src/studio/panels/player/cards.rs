@@ -9,7 +9,6 @@ use super::leaderboard::leaderboard;
 use super::limb_card::{CardSize, limb_card, limb_title};
 use super::overlay_legend::overlay_legend;
 use super::stage_card::{CardStates, CardTable, StageCard};
-use crate::studio::commands::overlay::Overlay;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, LessonCommand, StageCommand, WindowCommand};
 use crate::studio::panels::champions::FOLLOW_COMMAND;
@@ -22,13 +21,13 @@ use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::theme;
 
 /// Draws the reminder that a lesson is in progress, for the time when the lessons panel is hidden.
-fn lesson_card(ui: &mut egui::Ui, lesson: usize, commands: &mut Vec<Command>) {
+fn lesson_card(ui: &mut egui::Ui, lesson: usize) {
     ui.horizontal(|ui| {
         ui.label(format!("Lesson {} is in progress.", lesson + 1));
         let show = Command::Window(WindowCommand::OpenPanel(PanelKind::Lessons));
-        CommandButton::new("Show lesson", "", show).show(ui, commands);
+        CommandButton::new("Show lesson", "", show).show(ui);
         let leave = Command::Lesson(LessonCommand::Leave);
-        CommandButton::new("Back to my own run", "", leave).show(ui, commands);
+        CommandButton::new("Back to my own run", "", leave).show(ui);
     });
 }
 
@@ -45,15 +44,6 @@ fn back_in_words(way_back: &WayBack) -> Option<String> {
     }
 }
 
-/// Areas that the cards over the stage leave free or cover.
-pub(crate) struct AroundStage {
-    /// Cards that must not cover the snakes, in points: the leaderboard or the card of a generation, and the card of a
-    /// limb.
-    pub cards: Vec<egui::Rect>,
-    /// Area for messages, which are drawn in its lower right corner, in points.
-    pub messages_room: egui::Rect,
-}
-
 /// State, apart from the stage, on which the cards depend.
 pub(crate) struct CardSituation<'a> {
     /// Function that returns whether the setting that a command toggles is on.
@@ -68,15 +58,16 @@ pub(crate) struct CardSituation<'a> {
     pub messages: egui::Vec2,
 }
 
-/// Draws the cards over the edges of the stage.
+/// Draws the cards over the edges of the stage. Returns the cards that must not cover the snakes, which are the
+/// leaderboard or the card of a generation, and the card of a limb; and the area for messages, which are drawn in its
+/// lower right corner. All are in points.
 pub(crate) fn around_stage(
     context: &egui::Context,
     stage: egui::Rect,
     on_stage: &OnStage,
     (lanes, focused): (&[&Lane], &Lane),
     (situation, states): (&CardSituation<'_>, &mut CardStates),
-    commands: &mut Vec<Command>,
-) -> AroundStage {
+) -> (Vec<egui::Rect>, egui::Rect) {
     let room = stage.shrink(theme::GAP * 1.5);
     let palette = theme::of_context(context);
     let is_narrow = room.width() < theme::NARROW_STAGE;
@@ -85,7 +76,7 @@ pub(crate) fn around_stage(
         let small = egui::Margin::symmetric(theme::GAP as i8 / 2, theme::GAP as i8 / 2);
         palette.card(palette.field_hovered).inner_margin(small).show(ui, |ui| {
             let mode = on_stage.rig.camera_mode();
-            view_bar(ui, mode, is_narrow, situation.is_on, &on_stage.quality, states, commands);
+            view_bar(ui, mode, is_narrow, situation.is_on, &on_stage.quality, states);
         });
     });
     let bar = bar.response.rect;
@@ -104,7 +95,7 @@ pub(crate) fn around_stage(
     };
     let small = |name| card(name, "", String::new(), egui::Align2::LEFT_TOP);
     if let Some(lesson) = situation.lesson {
-        table.place(&small("lesson"), None, |ui| lesson_card(ui, lesson, commands));
+        table.place(&small("lesson"), None, |ui| lesson_card(ui, lesson));
     }
     let names = || lanes.iter().map(|lane| lane.staged.name()).collect::<Vec<_>>().join(", ");
     // With several lanes, the default camera shows few snakes in the lower left corner.
@@ -116,7 +107,7 @@ pub(crate) fn around_stage(
     let ranking = |ui: &mut egui::Ui| {
         let (focus, time_s) = (focused.number, on_stage.playback.time_s());
         let leaves = (is_narrow, on_stage.way_back.can_leave());
-        leaderboard(ui, lanes, mode, focus, time_s, leaves, commands);
+        leaderboard(ui, lanes, mode, focus, time_s, leaves);
     };
     let drawn = match mode {
         StageMode::Race => table.card(&board("Race"), None, ranking),
@@ -124,24 +115,22 @@ pub(crate) fn around_stage(
         StageMode::Generation { number, .. } => table.card(&generation(*number), None, |ui| {
             if let Some(best) = lanes.first() {
                 let following = (following, (situation.is_on)(&FOLLOW_COMMAND));
-                generation_card(ui, mode, following, best, lanes.len(), commands);
+                generation_card(ui, mode, following, best, lanes.len());
             }
         }),
         StageMode::Solo if following.holds => {
-            let waiting = |ui: &mut egui::Ui| waiting_card(ui, situation.progress, commands);
+            let waiting = |ui: &mut egui::Ui| waiting_card(ui, situation.progress);
             table.card(&generation(1), None, waiting)
         }
         StageMode::Solo => back_in_words(&on_stage.way_back).map(|back| {
             table.place(&small("back"), None, |ui| {
-                let leave = Command::Stage(StageCommand::Leave);
-                CommandButton::new(back, "", leave).show(ui, commands);
+                CommandButton::new(back, "", Command::Stage(StageCommand::Leave)).show(ui);
             })
         }),
     };
-    if on_stage.overlays.shows_any() {
+    if !on_stage.overlays.is_empty() {
         let is_pulled = lanes.iter().any(|lane| lane.replay.is_disturbed());
-        let shown = Overlay::ALL.into_iter().filter(|overlay| on_stage.overlays.shows(*overlay));
-        let shown = shown.map(Overlay::name).collect();
+        let shown = on_stage.overlays.iter().map(|overlay| overlay.name()).collect();
         let legend = card("legend", "Legend", shown, egui::Align2::LEFT_TOP);
         table.card(&legend, None, |ui| overlay_legend(ui, &on_stage.overlays, is_pulled));
     }
@@ -158,5 +147,5 @@ pub(crate) fn around_stage(
         table.taken[1..].iter().copied().filter(|area| Some(*area) != limb_place).collect();
     let messages_room = messages_room(stage, bar, limb_place, &others, situation.messages);
     let board = drawn.map(|area| area.expand(theme::GAP));
-    AroundStage { cards: board.into_iter().chain(limb_place).collect(), messages_room }
+    (board.into_iter().chain(limb_place).collect(), messages_room)
 }

@@ -19,7 +19,6 @@ pub(crate) fn generation_card(
     (following, follows): (&Following, Option<bool>),
     best: &Lane,
     shown: usize,
-    commands: &mut Vec<Command>,
 ) {
     let StageMode::Generation { size, .. } = mode else { return };
     ui.label(how_many(*size, shown));
@@ -28,29 +27,31 @@ pub(crate) fn generation_card(
         explain(ui, &format!("Story, part {part} of {parts}"));
     }
     ui.horizontal(|ui| {
-        follow_box(ui, follows, commands);
+        follow_box(ui, follows);
         let hint = "Show only the best snake of this generation";
-        let single = Command::Stage(StageCommand::Single);
-        CommandButton::new("Only the best", hint, single).show(ui, commands);
-        let hint = "Race it against copies that each lack one joint or one motion: the less far a copy gets, the more the climb needs what it lacks";
+        CommandButton::new("Only the best", hint, Command::Stage(StageCommand::Single)).show(ui);
         let why = Command::Stage(StageCommand::RaceKnockOuts);
-        CommandButton::new("Why does it climb?", hint, why).show(ui, commands);
+        CommandButton::new("Why does it climb?", WHY_HINT, why).show(ui);
     });
     let champion = best.staged.champion();
     if champion.evaluation.is_on_landing(&champion.trial.stairs) {
-        after_landing(ui, best.staged.source(), commands);
+        after_landing(ui, best.staged.source());
     }
 }
 
+/// Explains the race that tells why a snake climbs.
+pub(super) const WHY_HINT: &str = "Race this snake against copies with one joint limp, or without bending or twisting: the less far \
+                                   a copy gets, the more the climb needs what that copy lacks";
+
 /// Draws large buttons for what to try after a landing, until they are closed. They come back with the next run.
-fn after_landing(ui: &mut egui::Ui, run: ChampionSource, commands: &mut Vec<Command>) {
+fn after_landing(ui: &mut egui::Ui, run: ChampionSource) {
     let id = egui::Id::new("after the landing");
     if ui.data(|data| data.get_temp(id)) == Some(run) {
         return;
     }
     ui.separator();
-    ui.horizontal_wrapped(|ui| {
-        ui.label(title_text("The best snake reaches the top. Try next:"));
+    ui.horizontal(|ui| {
+        ui.label(title_text("It reaches the top. Try next:"));
         if ui.small_button("Close").clicked() {
             ui.data_mut(|data| data.insert_temp(id, run));
         }
@@ -75,7 +76,7 @@ fn after_landing(ui: &mut egui::Ui, run: ChampionSource, commands: &mut Vec<Comm
     ] {
         let button = egui::Button::new(egui::RichText::new(label).strong());
         let button = button.min_size(LARGE_BUTTON);
-        CommandButton::of(button, hint, command).show(ui, commands);
+        CommandButton::of(button, hint, command).show(ui);
     }
 }
 
@@ -94,15 +95,11 @@ pub(super) fn how_many(size: u32, shown: usize) -> String {
 }
 
 /// Draws the card that is shown until the first generation is evaluated: `done` of `all` snakes are.
-pub(crate) fn waiting_card(
-    ui: &mut egui::Ui,
-    (done, all): (u32, u32),
-    commands: &mut Vec<Command>,
-) {
+pub(crate) fn waiting_card(ui: &mut egui::Ui, (done, all): (u32, u32)) {
     ui.label(format!("{done} of {all} random snakes tried. They appear here in a moment."));
     let hint = "Watch a snake of an earlier run that climbs the stairs";
     let play = Command::Player(PlayerCommand::Toggle);
-    CommandButton::new("Play the built-in champion instead", hint, play).show(ui, commands);
+    CommandButton::new("Play the built-in champion instead", hint, play).show(ui);
 }
 
 #[cfg(test)]
@@ -113,7 +110,7 @@ mod tests {
     #[test]
     fn after_a_landing_three_buttons_lead_on_until_they_are_closed() {
         let run = ChampionSource::Run(0);
-        let mut panel = panel([300.0, 300.0], move |ui, commands| after_landing(ui, run, commands));
+        let mut panel = panel([300.0, 300.0], move |ui| after_landing(ui, run));
         let race = Command::Stage(StageCommand::RaceGenerations);
         assert_eq!(clicked(&mut panel, "Race the generations"), [race]);
         panel.run();

@@ -3,11 +3,12 @@
 use bevy_egui::egui;
 
 use super::presented_caption::PresentedCaption;
-use super::strip_marks::landing_flag;
+use super::strip_marks::{FLAG_WIDTH, landing_flag};
 use crate::studio::commands::{Command, PlanCommand, StageCommand};
 use crate::studio::stage::StageMode;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::ranking::{RankedLane, ranking};
+use crate::studio::state::knock_outs::answer_in_words;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::decimals::decimals;
@@ -52,7 +53,7 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     });
 }
 
-/// Draws the leaderboard, and collects the user's commands. `focus` is the lane whose numbers are shown. On a narrow
+/// Draws the leaderboard, and sends the user's commands. `focus` is the lane whose numbers are shown. On a narrow
 /// stage (`is_narrow`) the texts are shorter. `can_leave` tells whether an earlier scene can come back.
 pub(crate) fn leaderboard(
     ui: &mut egui::Ui,
@@ -61,7 +62,6 @@ pub(crate) fn leaderboard(
     focus: usize,
     time_s: f64,
     (is_narrow, can_leave): (bool, bool),
-    commands: &mut Vec<Command>,
 ) {
     let palette = theme::of(ui);
     let beginning = common_beginning(lanes).filter(|_| *mode != StageMode::Race);
@@ -76,23 +76,28 @@ pub(crate) fn leaderboard(
         .min_col_width(0.0)
         .spacing([theme::GAP, theme::GAP / 4.0])
         .show(ui, |ui| {
-            for (place, ranked) in ranking.iter().enumerate() {
-                let lane = lanes.iter().find(|lane| lane.number == ranked.lane);
+            // A row that changed places with its rank could not be followed, and would slip away from under the pointer.
+            for lane in lanes {
+                let of_lane = |ranked: &RankedLane| ranked.lane == lane.number;
+                let Some(place) = ranking.iter().position(of_lane) else { continue };
+                let ranked = &ranking[place];
                 let is_winner = place == 0 && ranked.counts() && ranked.landed_s.is_some();
                 if is_winner {
                     // A coloured background would look like that of the selected row.
                     landing_flag(ui, WINNER).on_hover_text(format!("{WINNER}. {ORDER}"));
                 } else {
                     let rank = egui::RichText::new(format!("{}", place + 1)).monospace();
-                    ui.label(rank.color(palette.text_weak)).on_hover_text(ORDER);
+                    let rank = egui::Label::new(rank.color(palette.text_weak));
+                    let size = egui::vec2(FLAG_WIDTH, ui.spacing().interact_size.y);
+                    ui.add_sized(size, rank).on_hover_text(ORDER);
                 }
                 lane_dot(ui, ranked.lane, theme::LANE_DOT);
-                let beginning = lane.and_then(|lane| lane.staged.beginning_in_words());
+                let beginning = lane.staged.beginning_in_words();
                 let beginning = beginning.map(|words| format!("\n{}: {words}", ranked.name));
                 let hint = "Show the numbers and torques of this snake below".to_owned();
                 let name = ui.selectable_label(ranked.lane == focus, &ranked.name);
                 if name.on_hover_text(hint + &beginning.unwrap_or_default()).clicked() {
-                    commands.push(Command::Stage(StageCommand::Focus(ranked.lane)));
+                    Command::Stage(StageCommand::Focus(ranked.lane)).send(ui);
                 }
                 // The fixed width prevents the layout from moving while the values change.
                 let text = match (ranked.is_disqualified, ranked.landed_s) {
@@ -110,18 +115,23 @@ pub(crate) fn leaderboard(
                 };
                 let width = if is_narrow { 8 } else { 14 };
                 let text = egui::RichText::new(format!("{text:>width$}")).monospace().color(color);
-                let value = ui.label(text);
-                if let Some(lane) = lane {
-                    value.on_hover_ui(|ui| split_times(ui, lane, time_s));
-                }
+                ui.label(text).on_hover_ui(|ui| split_times(ui, lane, time_s));
                 if keeps_each && ranked.lane > 0 {
-                    keep_button(ui, ranked, commands);
+                    keep_button(ui, ranked);
                 }
                 ui.end_row();
             }
         });
     if *mode == StageMode::Race {
-        latest_seen(ui, &ranking, time_s);
+        // The rows above determine the width of the card.
+        let width = ui.min_rect().width();
+        ui.scope(|ui| {
+            ui.set_max_width(width);
+            latest_seen(ui, &ranking, time_s);
+            if let Some(answer) = answer_in_words(lanes) {
+                explain(ui, &answer);
+            }
+        });
     }
     if let StageMode::WhatIf { beside, current, .. } = mode
         && *current <= beside.len()
@@ -130,11 +140,11 @@ pub(crate) fn leaderboard(
     }
     let selected = lanes.iter().find(|lane| lane.number == focus);
     ui.horizontal(|ui| {
-        buttons(ui, mode, (keeps_each, can_leave), commands);
+        buttons(ui, mode, (keeps_each, can_leave));
         if *mode == StageMode::Race && selected.is_some_and(|lane| lane.staged.is_changed()) {
             let hint = "Use the changed settings of the selected snake's world for the next run";
             let use_it = Command::Plan(PlanCommand::UseWorldOfLane);
-            CommandButton::new("Use this world", hint, use_it).show(ui, commands);
+            CommandButton::new("Use this world", hint, use_it).show(ui);
         }
     });
 }
@@ -147,17 +157,21 @@ const WINNER: &str = "First at the top";
 /// Text that is shown while the next change of a what-if adds a lane.
 const NEXT_LANE: &str = "The next change gets a lane of its own.";
 
-/// Draws the first places at the latest moment of the race that was shown, after playback has gone back to an earlier one.
+/// Draws the first places at the latest moment of the race that was shown, also after playback has gone back to an earlier one.
+/// The text takes two lines at all times, so that the card keeps its size.
 fn latest_seen(ui: &mut egui::Ui, ranking: &[RankedLane], time_s: f64) {
     let mut names: Vec<&str> = ranking.iter().map(|ranked| ranked.name.as_str()).collect();
     names.sort_unstable();
     let id = egui::Id::new(("latest of a race", names));
     let latest: Option<(f64, String)> = ui.data(|data| data.get_temp(id));
-    if let Some((at_s, places)) = latest.filter(|(at_s, _)| *at_s > time_s) {
-        return explain(ui, &format!("At {at_s:.1} s: {places}"));
-    }
-    let places = PresentedCaption::of_race(ranking).in_words();
-    ui.data_mut(|data| data.insert_temp(id, (time_s, places)));
+    let (at_s, places) = latest.filter(|(at_s, _)| *at_s > time_s).unwrap_or_else(|| {
+        let latest = (time_s, PresentedCaption::of_race(ranking).title.text);
+        ui.data_mut(|data| data.insert_temp(id, latest.clone()));
+        latest
+    });
+    let text = format!("At {at_s:.1} s: {places}");
+    ui.set_min_height(2.0 * ui.text_style_height(&egui::TextStyle::Body));
+    explain(ui, &text);
 }
 
 /// Describes the time from which all copies differ from the original, if it is the same for all.
@@ -169,47 +183,38 @@ fn common_beginning(lanes: &[&Lane]) -> Option<String> {
 }
 
 /// Draws the button that keeps only one of several copies.
-fn keep_button(ui: &mut egui::Ui, ranked: &RankedLane, commands: &mut Vec<Command>) {
+fn keep_button(ui: &mut egui::Ui, ranked: &RankedLane) {
     let said = format!("Keep {}", ranked.name);
     let hint = format!("{said}: only this lane stays, and the next run gets its world");
     let button = ui.small_button("Keep").on_hover_text(hint);
     if named(button, egui::WidgetType::Button, &said).clicked() {
-        commands.push(Command::Plan(PlanCommand::KeepLane(ranked.lane)));
+        Command::Plan(PlanCommand::KeepLane(ranked.lane)).send(ui);
     }
 }
 
 /// Draws the buttons below the ranking.
-fn buttons(
-    ui: &mut egui::Ui,
-    mode: &StageMode,
-    (keeps_each, can_leave): (bool, bool),
-    commands: &mut Vec<Command>,
-) {
+fn buttons(ui: &mut egui::Ui, mode: &StageMode, (keeps_each, can_leave): (bool, bool)) {
     let StageMode::WhatIf { .. } = mode else {
         if can_leave {
             let hint = "Return to the scene from before the race";
-            let leave = Command::Stage(StageCommand::Leave);
-            CommandButton::new("Leave race", hint, leave).show(ui, commands);
+            CommandButton::new("Leave race", hint, Command::Stage(StageCommand::Leave)).show(ui);
         }
         let (hint, single) = ("Show only the selected snake", Command::Stage(StageCommand::Single));
-        CommandButton::new("Only this one", hint, single).show(ui, commands);
+        CommandButton::new("Only this one", hint, single).show(ui);
         return;
     };
     if !keeps_each {
         let hint = "Keep this change, also for the next run";
-        let keep = Command::Stage(StageCommand::KeepChange);
-        CommandButton::new("Keep", hint, keep).show(ui, commands);
+        CommandButton::new("Keep", hint, Command::Stage(StageCommand::KeepChange)).show(ui);
     }
     let hint = match keeps_each {
         true => "Discard the latest copy. The next run gets the world of the lane before it",
         false => "Discard this change, also for the next run",
     };
-    let discard = Command::Plan(PlanCommand::DropChange);
-    CommandButton::new("Discard", hint, discard).show(ui, commands);
+    CommandButton::new("Discard", hint, Command::Plan(PlanCommand::DropChange)).show(ui);
     if mode.can_try_another() {
         let hint = "Leave this copy as it is: the next change makes another one beside it";
-        let another = Command::Stage(StageCommand::TryAnother);
-        CommandButton::new("Try another", hint, another).show(ui, commands);
+        CommandButton::new("Try another", hint, Command::Stage(StageCommand::TryAnother)).show(ui);
     }
 }
 

@@ -74,7 +74,7 @@ pub(super) fn limb_title(lane: &Lane, limb: usize) -> String {
         last if last + 1 == count && !body.is_branching() => ", the tail",
         _ => "",
     };
-    format!("Limb {} of {count}{part}", limb + 1)
+    format!("Block {} of {count}{part}", limb + 1)
 }
 
 /// Draws the readings of a limb; the head is 0. While the stage plays (`is_playing`), the readings of contacts change
@@ -134,7 +134,7 @@ pub(super) fn limb_card(
         }
     });
     if size == CardSize::Full {
-        ui.label(weak(ui, "Drag the limb to pull it").small());
+        ui.label(weak(ui, "Drag the block to pull it").small());
     }
 }
 

@@ -32,7 +32,7 @@ pub(crate) fn overlay_legend(ui: &mut egui::Ui, overlays: &Overlays, is_pulled: 
     ui.spacing_mut().item_spacing.y = theme::GAP / 4.0;
     // The rows are as low as their samples, so that the legend is small.
     ui.spacing_mut().interact_size.y = SAMPLE.y;
-    for overlay in Overlay::ALL.into_iter().filter(|overlay| overlays.shows(*overlay)) {
+    for &overlay in overlays.iter() {
         let name = overlay.name();
         let entries = entries(overlay, is_pulled, theme::of(ui));
         let is_one = entries.len() == 1;
@@ -122,17 +122,14 @@ fn arrow(from: Pos2, to: Pos2, width: f32, color: Color32) -> Vec<Shape> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::panels::testing::shows;
-    use egui_kittest::Harness;
+    use crate::studio::panels::testing::{Sent, panel, shows};
     use egui_kittest::kittest::Queryable;
 
     /// Creates the legend of these overlays. `is_pulled` tells whether the snake was pulled.
-    fn legend(shown: &[Overlay], is_pulled: bool) -> Harness<'static> {
+    fn legend(shown: &[Overlay], is_pulled: bool) -> Sent<'static> {
         let mut overlays = Overlays::default();
-        shown.iter().for_each(|overlay| overlays.toggle(*overlay));
-        let mut harness = Harness::new_ui(move |ui| overlay_legend(ui, &overlays, is_pulled));
-        harness.run();
-        harness
+        overlays.extend(shown);
+        panel([800.0, 600.0], move |ui| overlay_legend(ui, &overlays, is_pulled))
     }
 
     #[test]

@@ -16,24 +16,25 @@ use crate::studio::ui::theme;
 
 /// Maximum number of snakes that a race's caption names, the leading ones.
 const NAMED: usize = 3;
-/// Distance in a what-if within which the snakes count as level, in metres.
+/// Distance within which snakes count as level, in metres.
 const EQUAL_M: f32 = 0.05;
 
 /// Texts of the presenting mode's caption.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct PresentedCaption {
     /// Large line, with a dot in the colour of its lane.
-    title: CaptionPart,
+    pub title: CaptionPart,
     /// Parts of the smaller line below.
     details: Vec<CaptionPart>,
 }
 
 /// A part of the caption: a text with an optional dot.
 #[derive(Debug, Clone, Default, PartialEq)]
-struct CaptionPart {
+pub(crate) struct CaptionPart {
     /// Lane whose colour the dot before the text has; the first is 0. `None` for no dot.
     lane: Option<usize>,
-    text: String,
+    /// The text.
+    pub text: String,
 }
 
 impl CaptionPart {
@@ -55,7 +56,7 @@ impl PresentedCaption {
         let time_s = on_stage.playback.time_s();
         let mut caption = match &*on_stage.mode {
             StageMode::Solo | StageMode::Generation { .. } => {
-                let generation = first.staged.generation();
+                let generation = first.staged.champion().origin.generation;
                 let is_first_landing = run
                     .milestones
                     .iter()
@@ -100,8 +101,10 @@ impl PresentedCaption {
             None => format!("{} m", decimals(ranked.y_m, 1)),
         };
         let Some(leader) = ranking.first() else { return Self::default() };
+        let is_level = |of: &RankedLane| (of.y_m - leader.y_m).abs() < EQUAL_M;
         let title = match leader.landed_s.filter(|_| leader.counts()) {
             Some(_) => format!("{} wins: {}", leader.name, result(leader)),
+            None if ranking.iter().all(is_level) => "All are level".to_owned(),
             None => format!("{} leads: {}", leader.name, result(leader)),
         };
         let behind = ranking.iter().enumerate().take(NAMED).skip(1).map(|(place, ranked)| {
@@ -112,12 +115,6 @@ impl PresentedCaption {
             title: CaptionPart { lane: Some(leader.lane), text: title },
             details: behind.collect(),
         }
-    }
-
-    /// Returns all parts of the caption in one line.
-    pub fn in_words(self) -> String {
-        let parts = std::iter::once(self.title).chain(self.details).map(|part| part.text);
-        parts.collect::<Vec<_>>().join(", ")
     }
 
     /// Creates the caption of a what-if: compares the latest copy, which is the last lane, with the original, which is the first.
@@ -172,7 +169,10 @@ pub(crate) fn caption_band(ui: &mut egui::Ui, caption: &PresentedCaption) {
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = theme::GAP / 2.0;
             let width = ui.available_width() - theme::PRESENTED_SIZES[0];
-            let fits = |size: &f32| width_of(ui, &caption.title.text, *size) <= width;
+            let fits = |size: &f32| {
+                let (text, font) = (caption.title.text.clone(), egui::FontId::proportional(*size));
+                ui.painter().layout_no_wrap(text, font, egui::Color32::WHITE).size().x <= width
+            };
             let sizes = theme::PRESENTED_SIZES;
             let size = sizes.into_iter().find(fits).unwrap_or(sizes[sizes.len() - 1]);
             // The line below does not move when the title is drawn in a smaller size.
@@ -203,16 +203,10 @@ fn part(ui: &mut egui::Ui, part: &CaptionPart, size: f32, height: f32) {
     });
 }
 
-fn width_of(ui: &egui::Ui, text: &str, size: f32) -> f32 {
-    let font = egui::FontId::proportional(size);
-    ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE).size().x
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::panels::testing::climber_lane;
-    use egui_kittest::Harness;
+    use crate::studio::panels::testing::{climber_lane, panel};
     use egui_kittest::kittest::Queryable;
 
     /// Creates a lane with the built-in climber at this time, in simulated seconds.
@@ -293,15 +287,13 @@ mod tests {
                 title: CaptionPart { lane: Some(2), text: text.to_owned() },
                 details: vec![CaptionPart::plain("All 30 snakes at once".to_owned())],
             };
-            let size = egui::vec2(1000.0, 625.0);
-            let mut harness = Harness::builder().with_size(size).build_ui(|ui| {
+            let panel = panel([1000.0, 625.0], |ui| {
                 caption_band(ui, &caption);
                 let left = ui.available_rect_before_wrap();
                 ui.put(left, egui::Label::new("the stage"));
             });
-            harness.run();
-            let title = harness.get_by_label(text).rect();
-            let below = harness.get_by_label("All 30 snakes at once").rect();
+            let title = panel.get_by_label(text).rect();
+            let below = panel.get_by_label("All 30 snakes at once").rect();
             assert!(title.right() <= 1000.0 && below.bottom() <= 625.0, "{title} {below}");
             (title.height(), below.top())
         };

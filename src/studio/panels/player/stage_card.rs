@@ -9,67 +9,26 @@ use crate::studio::ui::accessible::named;
 use crate::studio::ui::text_rows::title_text;
 use crate::studio::ui::theme;
 
-/// Cards that the user folded or closed since the start of the program, and the rest of each card in its place.
+/// Cards that the user folded or closed since the start of the program, and those that have just appeared.
 #[derive(Debug, Default)]
 pub(crate) struct CardStates {
     folded: BTreeSet<&'static str>,
-    rests: BTreeMap<&'static str, CardRest>,
+    /// Cards that are drawn for the first time, whose size is not known yet.
+    new: BTreeSet<&'static str>,
     /// Closed cards, each with the occasion for which it was closed. Another occasion brings the card back.
-    closed: BTreeMap<&'static str, String>,
-}
-
-impl CardStates {
-    /// Returns whether any card is closed.
-    pub fn has_closed(&self) -> bool {
-        !self.closed.is_empty()
-    }
-
-    /// Brings all closed cards back.
-    pub fn open_all(&mut self) {
-        self.closed.clear();
-    }
+    pub closed: BTreeMap<&'static str, String>,
 }
 
 /// Distance from the pointer to a card, in points, within which the card stays in its place.
 const REACH: f32 = theme::GAP * 6.0;
-/// Time after which the pointer would be at a card with its present velocity, in seconds, so that the card stays in its place.
-const AHEAD_S: f32 = 0.4;
-/// Time for which a card stays in its place after the pointer was near it, in seconds.
-const USED_S: f64 = 3.0;
-/// Time for which a card covers a snake or the gate before it moves, in seconds.
-const COVERS_S: f64 = 1.5;
 
-/// Rest of a card in its place.
-#[derive(Debug, Default)]
-struct CardRest {
-    /// Last time at which the pointer was near the card, in seconds.
-    used_s: Option<f64>,
-    /// Time since which the card covers something and another place would be better, in seconds. Minus infinity for a new card, which
-    /// moves at once.
-    covers_since_s: Option<f64>,
-}
-
-impl CardRest {
-    /// Returns whether a card stays in its place at the time `now_s`. `is_used` tells whether the pointer is near the card, `covers` whether
-    /// another place would be better, and `is_urgent` whether the card covers the selected limb.
-    fn lasts(&mut self, now_s: f64, is_used: bool, covers: bool, is_urgent: bool) -> bool {
-        self.used_s = if is_used { Some(now_s) } else { self.used_s };
-        let since_s = self.covers_since_s.filter(|_| covers).unwrap_or(now_s);
-        self.covers_since_s = covers.then_some(since_s);
-        let was_used = self.used_s.is_some_and(|used_s| now_s < used_s + USED_S);
-        let stays = if is_urgent { is_used } else { was_used || now_s < since_s + COVERS_S };
-        !covers || (stays && since_s.is_finite())
-    }
-}
-
-/// Returns whether the pointer is near a card or approaches it, and does not drag something else.
+/// Returns whether the pointer is near a card and does not drag something else.
 fn is_used(context: &egui::Context, card: egui::Rect) -> bool {
     let reach = card.expand(REACH);
     context.input(|input| {
         let pointer = &input.pointer;
         let drags_other = pointer.press_origin().is_some_and(|from| !reach.contains(from));
-        let at = pointer.latest_pos().filter(|_| !drags_other);
-        at.is_some_and(|at| reach.contains(at) || reach.contains(at + pointer.velocity() * AHEAD_S))
+        pointer.latest_pos().is_some_and(|at| reach.contains(at) && !drags_other)
     })
 }
 
@@ -81,7 +40,7 @@ pub(super) struct StageCard {
     pub title: String,
     /// Reason for which the card is shown, such as the snakes of a race. A card that was closed stays closed for it.
     pub occasion: String,
-    /// Corner of the stage at which the card is placed if it covers no snake there.
+    /// Corner of the stage at which the card is placed.
     pub corner: egui::Align2,
 }
 
@@ -128,7 +87,8 @@ impl CardTable<'_> {
         Some(area)
     }
 
-    /// Draws a card without a header. Returns its area.
+    /// Draws a card without a header. Returns its area. A card stays where it appeared, because a person reads it and clicks on it; only a
+    /// card over `selected` moves, unless the pointer is near it.
     pub fn place(
         &mut self,
         card: &StageCard,
@@ -140,24 +100,18 @@ impl CardTable<'_> {
         let (drawn, is_shown) = self
             .context
             .memory(|memory| (memory.area_rect(id), memory.areas().visible_last_frame(&layer)));
-        // Before the first frame, which egui does not show, the size of the card is unknown.
         let size = drawn.map_or(egui::Vec2::ZERO, |rect| rect.size());
         let (room, taken, all) = (self.room, &self.taken, &self.kept_free);
         let places = CardRoom { room, taken, selected, all, corner: card.corner };
-        let best = places.place(size);
-        let now = drawn.filter(|_| is_shown).and_then(|now| places.as_at(size, now));
-        let rest = self.states.rests.entry(card.name).or_default();
-        let lasts = |now: &egui::Rect| {
-            let now_s = self.context.input(|input| input.time);
-            let is_urgent = selected.is_some_and(|limb| limb.intersects(*now));
-            let covers = places.is_much_better(&best, now);
-            rest.lasts(now_s, is_used(self.context, *now), covers, is_urgent)
+        let is_new = self.states.new.remove(card.name) || !is_shown;
+        if !is_shown {
+            self.states.new.insert(card.name);
+        }
+        let stays = |now: &egui::Rect| {
+            selected.is_none_or(|limb| !limb.intersects(*now) || is_used(self.context, *now))
         };
-        let at = now.filter(lasts).unwrap_or_else(|| {
-            let covers_since_s = (!is_shown).then_some(f64::NEG_INFINITY);
-            *rest = CardRest { covers_since_s, used_s: None };
-            best
-        });
+        let now = drawn.filter(|_| !is_new).and_then(|now| places.as_at(size, now));
+        let at = now.filter(stays).unwrap_or_else(|| places.place(size));
         let palette = theme::of_context(self.context);
         let shown =
             egui::Area::new(id).fixed_pos(at.min).constrain_to(room).show(self.context, |ui| {
@@ -204,6 +158,7 @@ fn close_button(ui: &mut egui::Ui, title: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studio::panels::settings::tests::click;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -228,56 +183,58 @@ mod tests {
             },
             state,
         );
-        let click = |harness: &mut Harness<'_, _>, label: &str| {
-            harness.get_by_label(label).click();
-            harness.run();
-        };
         harness.run();
         click(&mut harness, "Fold Race");
         assert!(harness.query_by_label("content").is_none());
         click(&mut harness, "Unfold Race");
         harness.get_by_label("content");
         click(&mut harness, "Close Race");
-        assert!(harness.query_by_label("Race").is_none() && harness.state().0.has_closed());
+        assert!(harness.query_by_label("Race").is_none() && !harness.state().0.closed.is_empty());
         harness.state_mut().1 = "c and d".to_owned();
         harness.run();
         click(&mut harness, "Close Race");
-        harness.state_mut().0.open_all();
+        harness.state_mut().0.closed.clear();
         harness.run();
         harness.get_by_label("content");
     }
 
     #[test]
-    fn a_card_moves_after_it_covered_something_for_long_but_not_while_it_is_used() {
-        // Frames: time in seconds, whether the pointer is near, whether another place is better, whether that is urgent, whether it stays.
-        let frames = [
-            (0.0, false, false, false, true),
-            (1.0, false, true, false, true),
-            (2.4, false, true, false, true),
-            (2.6, false, true, false, false),
-            // In its new place, it begins anew.
-            (2.7, false, true, false, true),
-            (3.0, false, false, false, true),
-            (4.3, false, true, false, true),
-            (5.7, true, true, false, true),
-            (8.6, false, true, false, true),
-            (8.8, false, true, false, false),
-            // A selected limb is uncovered at once, unless the pointer is on the card.
-            (9.0, false, true, true, false),
-            (9.1, true, true, true, true),
-            (9.2, false, true, true, false),
-        ];
-        let mut rest = CardRest::default();
-        for (now_s, is_used, covers, is_urgent, stays) in frames {
-            assert_eq!(rest.lasts(now_s, is_used, covers, is_urgent), stays, "at {now_s} s");
-            rest = if stays { rest } else { CardRest::default() };
+    fn a_card_stays_beside_a_snake_that_moves_below_it_and_leaves_only_its_own_limb() {
+        let context = egui::Context::default();
+        let mut states = CardStates::default();
+        let mut frame = |limb: egui::Pos2, selects: bool, pointer: egui::Pos2| {
+            let mut at = egui::Rect::NOTHING;
+            let limb = egui::Rect::from_center_size(limb, egui::Vec2::splat(40.0));
+            let events = vec![egui::Event::PointerMoved(pointer)];
+            let input = egui::RawInput { events, ..Default::default() };
+            let _ = context.run_ui(input, |ui| {
+                let room = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(600.0, 400.0));
+                let (taken, kept_free) = (Vec::new(), vec![limb]);
+                let context = &ui.ctx().clone();
+                let mut table = CardTable { context, room, taken, kept_free, states: &mut states };
+                let (title, occasion) = ("Race".to_owned(), String::new());
+                let corner = egui::Align2::LEFT_TOP;
+                let card = StageCard { name: "board", title, occasion, corner };
+                at = table.place(&card, selects.then_some(limb), |ui| {
+                    ui.label("content");
+                });
+            });
+            at
+        };
+        let (away, far) = (egui::pos2(300.0, 200.0), egui::pos2(590.0, 390.0));
+        frame(away, false, far);
+        let first = frame(away, false, far);
+        assert_eq!(first.min, egui::Pos2::ZERO);
+        let below = first.center();
+        for _ in 0..500 {
+            assert_eq!(frame(below, false, far), first);
         }
-        rest.covers_since_s = Some(f64::NEG_INFINITY);
-        assert!(!rest.lasts(9.3, true, true, false), "a new card, whose size was unknown");
+        assert_eq!(frame(below, true, below), first, "the pointer is on the card");
+        assert!(!frame(below, true, far).contains(below));
     }
 
     #[test]
-    fn a_pointer_that_is_near_a_card_or_comes_to_it_uses_it_and_one_that_drags_a_snake_does_not() {
+    fn a_pointer_near_a_card_uses_it_and_one_that_drags_a_snake_does_not() {
         let card = egui::Rect::from_min_size(egui::pos2(400.0, 300.0), egui::vec2(200.0, 100.0));
         let used_after = |presses: bool, ways: &[f32]| {
             let (context, mut is_used_now) = (egui::Context::default(), false);
@@ -294,7 +251,6 @@ mod tests {
             is_used_now
         };
         assert!(!used_after(false, &[150.0]) && used_after(false, &[380.0]));
-        assert!(used_after(false, &[150.0, 166.0, 182.0, 198.0, 214.0, 230.0]), "it approaches");
         assert!(!used_after(true, &[150.0, 450.0]), "it drags something else");
     }
 }

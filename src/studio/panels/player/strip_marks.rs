@@ -12,6 +12,8 @@ use snakes_core::world::JointPlan;
 
 /// Half the size of an event's mark, in points.
 const HALF: f32 = 3.5;
+/// Width and height of the flag of a winner, in points.
+pub(super) const FLAG_WIDTH: f32 = HALF * 4.0;
 /// Width of the number beside an event's mark, in points.
 const NUMBER_WIDTH: f32 = 13.0;
 /// Maximum horizontal distance between the pointer and a mark that it hovers over, in points.
@@ -67,7 +69,7 @@ fn color_of(kind: ClimbEventKind, palette: &Palette) -> Color32 {
 
 /// Draws the mark of a landing in a line of text. `said` is the mark's label for screen readers.
 pub(super) fn landing_flag(ui: &mut egui::Ui, said: &str) -> egui::Response {
-    let size = egui::Vec2::splat(HALF * 4.0);
+    let size = egui::Vec2::splat(FLAG_WIDTH);
     let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
     let kind = ClimbEventKind::Landed;
     let mut flag = shape(kind, egui::Pos2::ZERO, color_of(kind, theme::of(ui)));

@@ -2,6 +2,7 @@
 
 use bevy_egui::egui;
 
+use super::generation_card::WHY_HINT;
 use super::torque_strip::{THIN, TorqueStrip};
 use crate::studio::commands::{Command, PlayerCommand, StageCommand};
 use crate::studio::panels::own_stairs_button::own_stairs_button;
@@ -15,7 +16,8 @@ use crate::studio::ui::decimals::decimals;
 use crate::studio::ui::icons::{Icon, icon_button};
 use crate::studio::ui::text_rows::{at_right, explain, title_text, weak};
 use crate::studio::ui::theme;
-use snakes_core::score::{Fitness, arrived_y_m};
+use snakes_core::schema::Choices;
+use snakes_core::score::{EndingKind, Fitness, arrived_y_m};
 
 /// Time span that the timeline shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,10 +48,14 @@ pub(crate) struct TimelinePanel {
     pub shows_torques: bool,
     /// Selected limb, whose joints alone have a row; `None` for all joints.
     pub limb: Option<usize>,
+    /// Whether a snake that lands has the button *Why does it climb?*; a generation has it on its card.
+    pub offers_why: bool,
 }
 
 /// Width of the button that lists further readings, in points.
 const MORE_WIDTH: f32 = 40.0;
+/// Width from which the field of the speed has room for its name, in points.
+const WIDTH_OF_WORDS: f32 = 320.0;
 /// Minimum width of a truncated sentence, in points: enough for "disqualified".
 const LEAST_SENTENCE: f32 = 100.0;
 /// Width of a monospaced character, in points.
@@ -58,7 +64,7 @@ const DIGIT_WIDTH: f32 = 8.0;
 const CHARACTER_WIDTH: f32 = 7.4;
 
 impl TimelinePanel {
-    /// Draws the timeline and collects the user's commands. `run` is the number of the current run.
+    /// Draws the timeline and sends the user's commands. `run` is the number of the current run.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
@@ -66,62 +72,109 @@ impl TimelinePanel {
         playback: &Playback,
         span: TimelineSpan,
         run: u32,
-        commands: &mut Vec<Command>,
     ) {
-        self.caption(ui, lane, span, run, commands);
+        caption(ui, lane, (span, playback.is_playing, self.offers_why), run);
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
-            player(ui, playback, span.end_s, commands);
+            player(ui, playback, span.end_s);
             at_right(ui, |ui| readings(ui, lane));
         });
         let height = if self.shows_torques { theme::TORQUE_STRIP_HEIGHT } else { THIN };
         let moment = self.torque_strip.ui(ui, (lane, self.limb), playback.time_s(), span, height);
-        commands.extend(moment.map(|time_s| Command::Player(PlayerCommand::Seek(time_s))));
+        Command::send_all(moment.map(|time_s| Command::Player(PlayerCommand::Seek(time_s))), ui);
     }
+}
 
-    /// Draws the caption of the replay, with buttons for recordings.
-    fn caption(
-        &self,
-        ui: &mut egui::Ui,
-        lane: &Lane,
-        span: TimelineSpan,
-        run: u32,
-        commands: &mut Vec<Command>,
-    ) {
-        let staged = &lane.staged;
-        ui.horizontal(|ui| {
-            at_right(ui, |ui| {
-                if staged.other_engine().is_some() && staged.could_be_as_found() {
-                    let show = Command::Stage(StageCommand::ShowAsFound);
-                    CommandButton::new("As recorded", "Play the recording", show).show(ui, commands);
-                } else if staged.recording().is_some() {
-                    let hint = "Simulate it with this version of the engine. The motion may differ from \
-                                the recording";
-                    let simulate = Command::Stage(StageCommand::Simulate);
-                    CommandButton::new("Simulate again", hint, simulate).show(ui, commands);
-                }
-                own_stairs_button(ui, staged, commands);
-                if lane.replay.is_disturbed() {
-                    let hint = "You pulled this snake, so its result does not count. Go back in time to undo it";
-                    let text = egui::RichText::new("pulled with the mouse, not counted").color(theme::of(ui).problem);
-                    ui.label(text).on_hover_text(hint);
-                }
-                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    let is_earlier = matches!(staged.source(), ChampionSource::Run(of) if of != run);
-                    let prefix = if is_earlier { "Earlier run: " } else { "" };
-                    let text = match span.hides_future {
-                        true => staged.label().to_owned(),
-                        false => format!("{prefix}{}", staged.caption()),
-                    };
-                    ui.add(egui::Label::new(title_text(text)).truncate());
-                });
+/// Draws the caption of the replay, with buttons for recordings.
+fn caption(
+    ui: &mut egui::Ui,
+    lane: &Lane,
+    (span, is_playing, offers_why): (TimelineSpan, bool, bool),
+    run: u32,
+) {
+    let staged = &lane.staged;
+    ui.horizontal(|ui| {
+        at_right(ui, |ui| {
+            if staged.other_engine().is_some() && staged.could_be_as_found() {
+                let show = Command::Stage(StageCommand::ShowAsFound);
+                CommandButton::new("As recorded", "Play the recording", show).show(ui);
+            } else if staged.recording().is_some() {
+                let hint = "Simulate it with this version of the engine. The motion may differ from \
+                            the recording";
+                let simulate = Command::Stage(StageCommand::Simulate);
+                CommandButton::new("Simulate again", hint, simulate).show(ui);
+            }
+            own_stairs_button(ui, staged);
+            if lane.replay.is_disturbed() {
+                let hint = "You pulled this snake, so its result does not count. Go back in time to undo it";
+                let text = egui::RichText::new("pulled with the mouse, not counted").color(theme::of(ui).problem);
+                ui.label(text).on_hover_text(hint);
+            } else if !span.hides_future {
+                ending(ui, lane, (is_playing, offers_why));
+            }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                let is_earlier = matches!(staged.source(), ChampionSource::Run(of) if of != run);
+                let prefix = if is_earlier { "Earlier run: " } else { "" };
+                let text = match span.hides_future {
+                    true => staged.label().to_owned(),
+                    false => format!("{prefix}{}", staged.caption()),
+                };
+                ui.add(egui::Label::new(title_text(text)).truncate());
             });
         });
+    });
+}
+
+/// Time before the moment that decided a trial from which the moment is played, in seconds.
+const LEAD_S: f64 = 2.0;
+/// Width from which the caption has room for the ending beside it, in points.
+const WIDTH_OF_ENDING: f32 = 520.0;
+/// Speed at which that moment is played, in simulated seconds per second.
+const SLOW: f32 = 0.5;
+
+/// Says how the trial of a lane ends, unless the snake lands in an honest way. Offers to play the moment that decides a failure, and to find
+/// out what a climb needs. From right to left.
+fn ending(ui: &mut egui::Ui, lane: &Lane, (is_playing, offers_why): (bool, bool)) {
+    let Some(ending) = lane.history().and_then(|history| history.evaluation().ending) else {
+        return;
+    };
+    let has_landed = ending.kind == EndingKind::Landed;
+    if lane.trial().stairs.steps == 0 {
+        return;
+    }
+    if has_landed {
+        // Where blocks are in the genes, their torques are, too, and no setting can take them away.
+        if offers_why && !lane.staged.champion().genome.body.has_own_blocks() {
+            let why = Command::Stage(StageCommand::RaceKnockOuts);
+            CommandButton::new("Why does it climb?", WHY_HINT, why).small().show(ui);
+        }
+        if ending.used().next().is_none() {
+            return;
+        }
+    } else {
+        let hint = "Play the moment that decides the trial, at half speed";
+        if ui.small_button("Why did it fail?").on_hover_text(hint).clicked() {
+            let from_s = (f64::from(ending.at_s) - LEAD_S).max(0.0);
+            let play = (!is_playing).then_some(PlayerCommand::Toggle);
+            let commands = [PlayerCommand::SetSpeed(SLOW), PlayerCommand::Seek(from_s)];
+            Command::send_all(commands.into_iter().chain(play).map(Command::Player), ui);
+        }
+    }
+    let tricks = ending.used().map(|trick| trick.choice());
+    let hint = tricks.fold(ending.kind.choice().sentence, |hint, trick| {
+        format!("{hint}\nIt {}. {}", trick.title, trick.sentence)
+    });
+    let moment = match ending.kind {
+        EndingKind::Landed | EndingKind::OutOfTime | EndingKind::Beside => String::new(),
+        _ => format!(", {:.1} s", ending.at_s),
+    };
+    if ui.available_width() > WIDTH_OF_ENDING {
+        ui.label(weak(ui, format!("End: {}{moment}", ending.words()))).on_hover_text(hint);
     }
 }
 
 /// Draws the playback buttons, the speed and the time.
-fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec<Command>) {
+fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64) {
     let play = match playback.is_playing {
         true => (Icon::Pause, "Pause", PlayerCommand::Toggle),
         false => (Icon::Play, "Play", PlayerCommand::Toggle),
@@ -136,19 +189,20 @@ fn player(ui: &mut egui::Ui, playback: &Playback, end_s: f64, commands: &mut Vec
         let (is_on, command) = (icon == Icon::Loop && playback.loops, Command::Player(command));
         let button = icon_button(ui, icon, is_on);
         if hint_of_command(button, hint, &command).clicked() {
-            commands.push(command);
+            command.send(ui);
         }
     }
     ui.add_space(theme::GAP / 2.0);
     let mut speed = playback.speed();
+    let prefix = if ui.available_width() < WIDTH_OF_WORDS { "× " } else { "Speed × " };
     let field = egui::DragValue::new(&mut speed)
         .range(SPEED_RANGE)
         .speed(0.02 * f64::from(playback.speed()))
         .max_decimals(2)
-        .prefix("× ");
+        .prefix(prefix);
     let hint = "Speed in simulated seconds per second: drag, click to type, or press + and −";
     if ui.add(field).on_hover_text(hint).changed() {
-        commands.push(Command::Player(PlayerCommand::SetSpeed(speed)));
+        Command::Player(PlayerCommand::SetSpeed(speed)).send(ui);
     }
     ui.add_space(theme::GAP / 2.0);
     let width = format!("{end_s:.2}").len();
@@ -170,13 +224,13 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
     // A recording stores only the final evaluation.
     let is_on_record = lane.staged.recording().is_some() && !lane.replay.is_over();
     if is_on_record {
-        let place = format!("{} m", decimals(evaluation.centre_y_m, 2));
-        ui.label(egui::RichText::new(place).monospace());
+        ui.monospace(format!("{} m", decimals(evaluation.centre_y_m, 2)));
         return explain(ui, "position");
     }
-    let behaviour = evaluation.behaviour;
-    let energy_kj = evaluation.effort.map(|effort| effort.energy_j / 1000.0);
-    let steps = behaviour.map(|seen| format!("{} of {}", seen.steps_climbed, trial.stairs.steps));
+    let energy = evaluation.effort.map(|effort| format!("{:.2} kJ", effort.energy_j / 1000.0));
+    let steps = evaluation
+        .behaviour
+        .map(|seen| format!("{} of {}", seen.steps_climbed, trial.stairs.steps));
     let more = match trial.fitness {
         Fitness::Climb if trial.stairs.steps > 0 => format!(
             "; it stops counting at {:.2} m, where the whole snake is on the landing",
@@ -200,11 +254,7 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
         ("fitness", Some(fitness_text), fitness_hint.as_str()),
         ("steps", steps, "Steps that the middle block has climbed"),
         ("speed", Some(format!("{:.2} m/s", lane.speed_m_s())), "Speed of the middle block"),
-        (
-            "energy",
-            energy_kj.map(|energy_kj| format!("{energy_kj:.2} kJ")),
-            "Energy that the joints have used so far",
-        ),
+        ("energy", energy, "Energy that the joints have used so far"),
     ];
     let known: Vec<(&str, String, &str)> =
         all.into_iter().filter_map(|(name, value, hint)| Some((name, value?, hint))).collect();
@@ -279,10 +329,11 @@ mod tests {
         width: f32,
         style: fn(&egui::Context),
     ) -> Sent<'_> {
-        let (mut timeline, playback) = (TimelinePanel::default(), Playback::default());
-        panel([width, 200.0], move |ui, commands| {
+        let playback = Playback::default();
+        let mut timeline = TimelinePanel { offers_why: true, ..TimelinePanel::default() };
+        panel([width, 200.0], move |ui| {
             style(ui.ctx());
-            timeline.ui(ui, lane, &playback, span, 0, commands);
+            timeline.ui(ui, lane, &playback, span, 0);
         })
     }
 
@@ -335,12 +386,37 @@ mod tests {
             let time = timeline.query_by_label_contains(" of 15.00 s");
             assert_eq!(time.is_some(), width > 368.0, "{width}");
             let time = time.unwrap_or_else(|| timeline.get_by_label(" 0.00 s")).rect();
-            let reason = timeline.query_by_label_contains("disqualified: ");
+            // The caption above says it as well.
+            let mut reasons = timeline.query_all_by_label_contains("disqualified: ");
+            let reason = reasons.find(|of| of.rect().bottom() > time.top());
             let shown = reason.or_else(|| timeline.query_by_label("More readings"));
             let shown = shown.expect("a reason or its button").rect();
             assert!(shown.left() >= time.right(), "{width}: {shown} covers {time}");
             assert!(shown.right() <= width, "{width}: {shown}");
         }
+    }
+
+    #[test]
+    fn a_trial_without_a_landing_says_how_it_ends_and_plays_the_moment_that_decides_it() {
+        let lane = disqualified();
+        let mut of_lane = timeline(&lane, SPAN, 900.0);
+        assert!(shows(&of_lane, "End: disqualified: "));
+        let from_s = (lane.end_s() - LEAD_S).max(0.0) as f32;
+        let commands = clicked(&mut of_lane, "Why did it fail?");
+        let [Command::Player(speed), Command::Player(PlayerCommand::Seek(to_s))] = &commands[..]
+        else {
+            panic!("{commands:?}")
+        };
+        assert_eq!(*speed, PlayerCommand::SetSpeed(SLOW));
+        assert!((*to_s as f32 - from_s).abs() < 0.1, "{to_s} s, not {from_s} s");
+        let hidden = TimelineSpan { hides_future: true, ..SPAN };
+        assert!(timeline(&lane, hidden, 900.0).query_by_label("Why did it fail?").is_none());
+        let mut landed = climber_lane(0, "climber");
+        landed.finish_lookahead();
+        let mut of_landed = timeline(&landed, SPAN, 900.0);
+        assert!(of_landed.query_by_label("Why did it fail?").is_none());
+        let why = Command::Stage(StageCommand::RaceKnockOuts);
+        assert_eq!(clicked(&mut of_landed, "Why does it climb?"), [why]);
     }
 
     #[test]

@@ -26,10 +26,8 @@ pub(crate) struct TorqueStrip {
 /// Lines and events of the strip, cached until their input changes.
 struct DrawnStrip {
     history: Arc<KeyframeHistory>,
-    rect: Rect,
-    end_s: f64,
-    is_dark: bool,
-    joints: Vec<usize>,
+    /// Rectangle of the torques, end of the strip in simulated seconds, whether the theme is dark, and the shown joints.
+    look: (Rect, f64, bool, Vec<usize>),
     shapes: Vec<Shape>,
     events: Vec<ClimbEvent>,
 }
@@ -101,8 +99,7 @@ impl TorqueStrip {
         if has_torques {
             names(ui, of_whole, &lane.body, &joints, is_wide);
         }
-        let mut climb = Vec::new();
-        match lane.history() {
+        let mut climb = match lane.history() {
             Some(history) => {
                 let drawn =
                     self.drawn(history, (lane, joints), plot, end_s, ui.visuals().dark_mode);
@@ -112,13 +109,10 @@ impl TorqueStrip {
                     seen.extend(drawn.shapes.iter().cloned());
                 }
                 // A snake that was pulled does not climb as in its undisturbed rollout.
-                if !lane.replay.is_disturbed() {
-                    climb.clone_from(&drawn.events);
-                }
+                if lane.replay.is_disturbed() { Vec::new() } else { drawn.events.clone() }
             }
-            None if !has_torques => climb = events(lane),
+            None if !has_torques => events(lane),
             None => {
-                climb = events(lane);
                 let text = match lane.lookahead_share() {
                     Some(share) => format!("Computing preview: {:.0} %", share * 100.0),
                     None if lane.staged.recording().is_some() => {
@@ -129,8 +123,9 @@ impl TorqueStrip {
                 let font = egui::FontId::proportional(theme::SMALL_SIZE);
                 let align = egui::Align2::CENTER_CENTER;
                 painter.text(rect.center(), align, text, font, palette.text_weak);
+                events(lane)
             }
-        }
+        };
         if hides_future {
             // Later marks would reveal the result that the reader has to guess.
             climb.retain(|event| event.time_s <= now_s);
@@ -162,22 +157,13 @@ impl TorqueStrip {
         end_s: f64,
         is_dark: bool,
     ) -> &DrawnStrip {
-        let known = self.drawn.take().filter(|drawn| {
-            Arc::ptr_eq(&drawn.history, history)
-                && (drawn.rect, drawn.end_s, drawn.is_dark) == (plot, end_s, is_dark)
-                && drawn.joints == joints
-        });
-        let drawn = known.unwrap_or_else(|| {
+        let look = (plot, end_s, is_dark, joints);
+        let is_same =
+            |drawn: &DrawnStrip| Arc::ptr_eq(&drawn.history, history) && drawn.look == look;
+        let drawn = self.drawn.take().filter(is_same).unwrap_or_else(|| {
             let palette = if is_dark { theme::Theme::Dark } else { theme::Theme::Light }.palette();
-            DrawnStrip {
-                history: Arc::clone(history),
-                rect: plot,
-                end_s,
-                is_dark,
-                shapes: shapes(history, (lane, &joints), plot, end_s, palette),
-                joints,
-                events: events(lane),
-            }
+            let shapes = shapes(history, (lane, &look.3), plot, end_s, palette);
+            DrawnStrip { history: Arc::clone(history), look, shapes, events: events(lane) }
         });
         self.drawn.insert(drawn)
     }

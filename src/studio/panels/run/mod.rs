@@ -3,8 +3,6 @@
 
 pub mod progress;
 
-use std::collections::BTreeSet;
-
 use bevy_egui::egui;
 
 use super::settings::Sheet;
@@ -27,36 +25,31 @@ use progress::progress;
 pub(super) struct EvolutionPanel {
     seed: NumberField,
     threads: NumberField,
-    sheet: Sheet,
+    /// Controls of the settings.
+    pub sheet: Sheet,
 }
 
 impl EvolutionPanel {
-    /// Draws the panel and collects the user's commands.
+    /// Draws the panel and sends the user's commands.
     /// `chart` draws the small chart below the progress.
-    pub fn ui(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        chart: impl FnOnce(&mut egui::Ui, &mut Vec<Command>),
-        commands: &mut Vec<Command>,
-    ) {
+    pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, chart: impl FnOnce(&mut egui::Ui)) {
         self.sheet.begin(ui, run);
-        // A click on a button also ends typing in a field. The typed value must be sent before the button's command.
-        let mut pressed = Vec::new();
         progress(ui, run);
-        self.buttons(ui, run, &mut pressed);
-        chart(ui, commands);
-        more_views(ui, commands);
+        // A click on a button also ends typing in a field. The typed value must be sent before the button's command.
+        let pressed = self.buttons(ui, run);
+        founder(ui, run);
+        chart(ui);
+        more_views(ui);
         self.knobs(ui);
-        let label = title_text("How it learns");
-        if self.sheet.fold(ui, HOW_IT_LEARNS, label, HOW_IT_LEARNS) {
-            self.how_it_learns(ui, run, commands);
+        let label = title_text(METHOD);
+        if self.sheet.fold(ui, METHOD_KEY, label, METHOD) {
+            self.method_of_evolution(ui, run);
         } else {
             next_run(ui, run);
         }
-        unfinished_runs(ui, run, commands);
-        self.sheet.send(commands);
-        commands.append(&mut pressed);
+        earlier_runs(ui, run);
+        self.sheet.send(ui);
+        Command::send_all(pressed, ui);
     }
 
     /// Draws the settings that the program is for: friction, height of the steps, limits of the joints, and the size of
@@ -74,13 +67,9 @@ impl EvolutionPanel {
         });
     }
 
-    /// Unfolds the advanced settings of the sections with these titles.
-    pub fn unfold(&mut self, sections: &BTreeSet<String>) {
-        self.sheet.unfold(sections.iter().cloned());
-    }
-
-    fn buttons(&self, ui: &mut egui::Ui, run: &CurrentRun, pressed: &mut Vec<Command>) {
-        let is_wrong = self.seed.problem().is_some() || self.sheet.has_problem();
+    /// Draws the buttons of the run. Returns the command of a clicked one.
+    fn buttons(&self, ui: &mut egui::Ui, run: &CurrentRun) -> Option<Command> {
+        let is_wrong = self.seed.problem.is_some() || self.sheet.has_problem();
         let status = run.status();
         let is_finished = status == RunStatus::Finished;
         let differs = run.next_run_differs();
@@ -104,47 +93,50 @@ impl EvolutionPanel {
             true => "Start a run with the changed settings; the current run stays saved",
             false => "Start a run with the next seed; the current run stays saved",
         };
-        ui.horizontal_wrapped(|ui| {
+        let row = ui.horizontal_wrapped(|ui| {
+            let mut pressed = None;
             for (index, (label, hint, command)) in
                 [first, single].into_iter().take(shown).enumerate()
             {
                 let button = button(ui, label, index == 0 && !is_finished);
-                CommandButton::of(button, hint, Command::Run(command)).show(ui, pressed);
+                let button = CommandButton::of(button, hint, Command::Run(command));
+                pressed = button.pressed(ui).or(pressed);
             }
             let button = button(ui, "New run", is_finished && !is_wrong);
             let new = CommandButton::of(button, new_hint, Command::Run(RunCommand::New));
-            new.unless(wrong).show(ui, pressed);
+            new.unless(wrong).pressed(ui).or(pressed)
         });
+        row.inner
     }
 
     /// Draws strategy, controller, size of the run, seed and threads.
-    fn how_it_learns(&mut self, ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
-        preset_switch(ui, run, commands);
+    fn method_of_evolution(&mut self, ui: &mut egui::Ui, run: &CurrentRun) {
+        preset_switch(ui, run);
         ui.horizontal(|ui| {
             let hint = "The same seed and settings always give the same run, bit for bit";
             let seed = self.seed.ui(ui, "Seed", hint, run.next_plan().seed, 0..=u64::MAX);
-            commands.extend(seed.map(|seed| Command::Plan(PlanCommand::SetSeed(seed))));
+            Command::send_all(seed.map(|seed| Command::Plan(PlanCommand::SetSeed(seed))), ui);
             let hint = "Number of snakes evaluated at the same time. More threads than processor cores are no \
                         faster. The result does not depend on it";
             let threads = self.threads.ui(ui, "Threads", hint, run.threads(), THREADS_RANGE);
-            commands.extend(threads.map(|threads| Command::Run(RunCommand::SetThreads(threads))));
+            let threads = threads.map(|threads| Command::Run(RunCommand::SetThreads(threads)));
+            Command::send_all(threads, ui);
         });
-        for reason in [self.seed.problem(), self.threads.problem()].into_iter().flatten() {
+        for reason in [&self.seed.problem, &self.threads.problem].into_iter().flatten() {
             problem(ui, reason);
         }
         self.sheet.section(ui, EvolutionSettings::RUN);
-        self.sheet.send(commands);
-        founder(ui, run, commands);
+        self.sheet.send(ui);
         changes(ui, run);
         next_run(ui, run);
         if let Some(hash) = run.hash_in_words() {
             let hint = "Fingerprint of all results of the run. The same seed and settings give the same hash \
-                        on every computer with an x86-64 processor";
+                        on every computer with an Intel or AMD processor (x86-64)";
             ui.label(weak(ui, hash)).on_hover_text(hint);
         }
         self.strategy(ui);
         self.controller(ui);
-        self.sheet.send(commands);
+        self.sheet.send(ui);
     }
 
     /// Draws the selection of the strategy, with the settings of the selected strategy and of all others.
@@ -210,17 +202,19 @@ impl EvolutionPanel {
     }
 }
 
-/// Key and name of the fold with all other settings of the run.
-const HOW_IT_LEARNS: &str = "How it learns";
+/// Title of the fold with all other settings of the run.
+const METHOD: &str = "Method of evolution";
+/// Name by which the preferences know whether that fold is open.
+const METHOD_KEY: &str = "How it learns";
 
 /// Draws the buttons that open the panels with more about the run.
-fn more_views(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+fn more_views(ui: &mut egui::Ui) {
     ui.horizontal(|ui| {
         for (label, kind) in
             [("More charts", PanelKind::Charts), ("Champions", PanelKind::Champions)]
         {
             let open = Command::Window(WindowCommand::OpenPanel(kind));
-            CommandButton::small(label, kind.hint(), open).show(ui, commands);
+            CommandButton::new(label, kind.hint_with_key(), open).small().show(ui);
         }
     });
 }
@@ -233,14 +227,14 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun) {
     }
 }
 
-/// Draws the name of the next run's founder, if any, with a button to remove it.
-fn founder(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+/// Draws the name of the snake from which a new run starts, if any, with a button for a run from scratch.
+fn founder(ui: &mut egui::Ui, run: &CurrentRun) {
     let Some(name) = run.next_founder() else { return };
     ui.horizontal(|ui| {
-        ui.label(format!("Starts from \"{name}\""));
+        ui.label(format!("A new run starts from \"{name}\""));
         let hint = "Create the first generation of the next run at random";
         let forget = Command::Plan(PlanCommand::ForgetFounder);
-        CommandButton::small("Start from scratch", hint, forget).show(ui, commands);
+        CommandButton::new("Start from scratch", hint, forget).small().show(ui);
     });
 }
 
@@ -264,7 +258,7 @@ fn changes(ui: &mut egui::Ui, run: &CurrentRun) {
 const MAX_LISTED_CHANGES: usize = 12;
 
 /// Draws the button that starts the experiment of the report or, if that is the next run, one of the standard climb.
-fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun) {
     let (label, preset, hint) = if run.next_plan().preset == REPORT {
         ("Run the standard climb", CLIMB, "Start a run that climbs to the landing")
     } else {
@@ -276,8 +270,8 @@ fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
         )
     };
     if ui.button(label).on_hover_text(hint).clicked() {
-        commands.push(Command::Plan(PlanCommand::SetPreset(preset.to_owned())));
-        commands.push(Command::Run(RunCommand::New));
+        Command::Plan(PlanCommand::SetPreset(preset.to_owned())).send(ui);
+        Command::Run(RunCommand::New).send(ui);
     }
 }
 
@@ -286,31 +280,31 @@ const REPORT: &str = "report";
 /// Name of the preset of the standard climb to the landing.
 const CLIMB: &str = "climb";
 
-/// Draws the list of unfinished runs that can be resumed.
-fn unfinished_runs(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+/// Draws the list of other runs, which can be resumed or, if they are finished, continued for more generations.
+fn earlier_runs(ui: &mut egui::Ui, run: &CurrentRun) {
     let header = egui::CollapsingHeader::new("Open an earlier run");
     let opened = header.show(ui, |ui| {
-        let Some(stopped) = run.stopped() else {
+        let Some(listed) = run.listed() else {
             return explain(ui, "Loading…");
         };
-        let mut stopped = stopped.peekable();
-        if stopped.peek().is_none() {
-            explain(ui, "There are no unfinished runs.");
+        let mut earlier = listed.filter(|of| of.run.finished > 0).peekable();
+        if earlier.peek().is_none() {
+            explain(ui, "There are no other runs.");
         }
-        for ListedRun { run: summary, name, .. } in stopped {
+        for ListedRun { run: summary, name, .. } in earlier {
             let generations = summary.generations_in_words();
             let behind = generations.trim_end_matches(" generations");
             let hint = format!(
                 "{generations} are finished. The current run stays saved.\n{}",
                 summary.folder.display()
             );
-            if row(ui, false, name, behind).on_hover_text(hint).clicked() {
-                commands.push(Command::Run(RunCommand::Continue(summary.folder.clone())));
+            if row(ui, name, behind).on_hover_text(hint).clicked() {
+                Command::Run(RunCommand::Continue(summary.folder.clone())).send(ui);
             }
         }
     });
     if opened.header_response.clicked() {
-        commands.push(Command::Run(RunCommand::ListRuns));
+        Command::Run(RunCommand::ListRuns).send(ui);
     }
 }
 

@@ -14,10 +14,10 @@ const MEASURED_GENERATIONS: usize = 5;
 /// Draws the progress of the run.
 pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let (done, population) = run.progress();
-    let random_first = random_first(run.settings(), run.reports().len(), run.founder().is_some());
+    let finished = run.reports().len();
+    let random_first = random_first(run.settings(), finished, run.founder().is_some());
     let population = random_first.unwrap_or(population);
     let generations = run.settings().evolution.generations;
-    let finished = run.reports().len();
     let (text, share) = match run.status() {
         RunStatus::Finished if finished < generations as usize => {
             (finished_early(finished, generations, run.plan_now.budget()), 1.0)
@@ -30,7 +30,9 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
                 RunStatus::Running | RunStatus::Finished => "",
             };
             let most = run.plan_now.most_generations_in_words();
-            let text = format!("Generation {} of {most}{suffix}", finished + 1);
+            // The last generation is finished for a moment before the run is.
+            let current = (finished + 1).min(generations as usize);
+            let text = format!("Generation {current} of {most}{suffix}");
             (text, done as f32 / population.max(1) as f32)
         }
     };
@@ -49,15 +51,13 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     };
     ui.add(egui::ProgressBar::new(share).text(inside).fill(theme::of(ui).accent_soft))
         .on_hover_text(hint);
-    let evaluations_per_s = evaluations_per_s(run.reports());
-    let evaluations_left = evaluations_left(run, done);
     // This line is always present, so that the layout does not move when the first generation is finished.
-    let text = match evaluations_per_s {
+    let text = match evaluations_per_s(run.reports()) {
         Some(per_s) if run.status() == RunStatus::Finished => {
             format!("{} snakes per second", rounded(per_s))
         }
         Some(per_s) => {
-            let time = duration_text(evaluations_left as f64 / per_s);
+            let time = duration_text(evaluations_left(run, done) as f64 / per_s);
             format!("{time} left, {} snakes per second", rounded(per_s))
         }
         None => "The time left appears after the first generation".to_owned(),
@@ -83,8 +83,7 @@ fn evaluated(done: u32, all: u32, population: u32) -> String {
 /// larger than planned, such as the first of CMA-ES.
 fn finished_early(finished: usize, planned: u32, budget: u64) -> String {
     format!(
-        "Finished after {finished} generations: the run may try {} snakes, and too few are left for another one. \
-         {planned} generations were planned, but some had more snakes than usual",
+        "Finished after {finished} generations: the limit of {} snakes is reached. {planned} generations were planned, but some had more snakes than usual",
         with_thousands(budget)
     )
 }
@@ -191,8 +190,7 @@ mod tests {
     fn a_run_that_finished_early_says_what_ended_it_and_why_before_the_planned_number() {
         assert_eq!(
             finished_early(57, 60, 6000),
-            "Finished after 57 generations: the run may try 6,000 snakes, and too few are left for another one. \
-             60 generations were planned, but some had more snakes than usual"
+            "Finished after 57 generations: the limit of 6,000 snakes is reached. 60 generations were planned, but some had more snakes than usual"
         );
     }
 

@@ -1,61 +1,43 @@
 //! Tests of the run panel.
 
 use super::*;
-use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, every_section};
+use crate::studio::panels::settings::tests::{
+    assert_nothing_is_wider_than, assert_shows, click, every_section,
+};
 use crate::studio::panels::testing::{self, Sent, press, set, shows, type_into};
 use crate::studio::state::current_run::prepared_run as run;
 use crate::studio::ui::notifications::Notices;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::{HalvingSettings, StrategyKind};
 
 /// Calls `act` on the panel. Returns the commands that were sent.
 fn sent(run: &CurrentRun, act: impl FnOnce(&mut Sent<'_>)) -> Vec<Command> {
     let mut panel = EvolutionPanel::default();
-    panel.unfold(&[HOW_IT_LEARNS.to_owned()].into());
-    let mut harness = Harness::builder()
-        .with_size(egui::vec2(theme::PANEL_WIDTH, 1600.0))
-        .build_ui_state(|ui, commands| panel.ui(ui, run, |_, _| {}, commands), Vec::new());
-    act(&mut harness);
-    harness.run();
-    harness.state().clone()
+    panel.sheet.unfold(&[METHOD_KEY.to_owned()].into());
+    let size = [theme::PANEL_WIDTH, 1600.0];
+    testing::sent_by(testing::panel(size, |ui| panel.ui(ui, run, |_| ())), act)
 }
 
 #[test]
-fn each_button_sends_its_command() {
-    let run = run();
-    for (label, command) in [
-        ("Start evolution", Command::Run(RunCommand::Start)),
-        ("One generation", Command::Run(RunCommand::SingleGeneration)),
-        ("New run", Command::Run(RunCommand::New)),
+fn each_button_of_a_run_that_is_ready_runs_or_is_finished_sends_its_command() {
+    let (ready, mut running, mut finished) = (run(), run(), run());
+    running.start().expect("a thread");
+    finished.run_hash = Some(1);
+    for (run, label, command) in [
+        (&ready, "Start evolution", RunCommand::Start),
+        (&ready, "One generation", RunCommand::SingleGeneration),
+        (&ready, "New run", RunCommand::New),
+        (&running, "Pause evolution", RunCommand::Pause),
+        (&finished, "Continue for 6 generations", RunCommand::Extend),
+        (&finished, "New run", RunCommand::New),
     ] {
-        assert_eq!(sent(&run, |harness| harness.get_by_label(label).click()), [command]);
-    }
-}
-
-#[test]
-fn a_finished_run_offers_more_generations_and_a_new_run() {
-    let mut run = run();
-    run.run_hash = Some(1);
-    for (label, command) in
-        [("Continue for 6 generations", RunCommand::Extend), ("New run", RunCommand::New)]
-    {
-        let sent = sent(&run, |harness| {
-            assert!(!shows(harness, "One generation"), "there is none left");
+        let sent = sent(run, |harness| {
+            let is_finished = run.run_hash.is_some();
+            assert_eq!(shows(harness, "One generation"), !is_finished, "none is left");
             harness.get_by_label(label).click();
         });
-        assert_eq!(sent, [Command::Run(command)]);
+        assert_eq!(sent, [Command::Run(command)], "{label}");
     }
-}
-
-#[test]
-fn the_first_button_pauses_a_running_run() {
-    let mut run = run();
-    run.start().expect("a thread");
-    assert_eq!(
-        sent(&run, |harness| harness.get_by_label("Pause evolution").click()),
-        [Command::Run(RunCommand::Pause)]
-    );
 }
 
 #[test]
@@ -64,27 +46,10 @@ fn the_founder_of_the_next_run_can_be_removed() {
     let champion = snakes_core::save::shipped_champion().expect("well formed").champion;
     run.start_next_from(&champion, "climber").expect("it fits");
     let commands = sent(&run, |harness| {
-        assert!(harness.query_by_label("Starts from \"climber\"").is_some());
+        assert!(harness.query_by_label("A new run starts from \"climber\"").is_some());
         harness.get_by_label("Start from scratch").click();
     });
     assert_eq!(commands, [Command::Plan(PlanCommand::ForgetFounder)]);
-}
-
-#[test]
-fn a_valid_seed_is_sent_on_enter_and_an_invalid_one_is_not() {
-    let run = run();
-    let type_seed = |text: &'static str| {
-        sent(&run, move |harness| {
-            type_into(harness, "Seed", text);
-            press(harness, egui::Key::Enter);
-        })
-    };
-    assert_eq!(
-        type_seed("23"),
-        [Command::Plan(PlanCommand::SetSeed(23))],
-        "in place of the 1 that was there"
-    );
-    assert_eq!(type_seed("x"), []);
 }
 
 #[test]
@@ -159,23 +124,20 @@ fn the_selected_strategy_shows_its_settings_and_the_others_are_reachable() {
 }
 
 #[test]
-fn typed_population_and_threads_are_sent() {
+fn a_valid_number_replaces_the_one_before_on_enter_and_an_invalid_one_is_not_sent() {
     let run = run();
-    for (label, commands) in [
-        ("Population", set("evolution.population", "40")),
-        ("Generations", set("evolution.generations", "40")),
-        ("Threads", Command::Run(RunCommand::SetThreads(40))),
+    for (label, text, command) in [
+        ("Population", "40", Some(set("evolution.population", "40"))),
+        ("Generations", "40", Some(set("evolution.generations", "40"))),
+        ("Threads", "40", Some(Command::Run(RunCommand::SetThreads(40)))),
+        ("Seed", "23", Some(Command::Plan(PlanCommand::SetSeed(23)))),
+        ("Seed", "x", None),
     ] {
         let sent = sent(&run, |harness| {
-            harness.get_by_label(label).focus();
-            harness.run();
-            harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-            harness.run();
-            harness.get_by_label(label).type_text("40");
-            harness.run();
+            type_into(harness, label, text);
             press(harness, egui::Key::Enter);
         });
-        assert_eq!(sent, [commands]);
+        assert!(sent.iter().eq(&command), "{label} {text}: {sent:?}");
     }
 }
 
@@ -191,34 +153,20 @@ fn one_button_runs_the_reports_experiment_and_one_the_standard_climb() {
 }
 
 #[test]
-fn the_first_view_has_the_main_settings_and_the_others_are_below_a_fold() {
+fn the_first_view_has_the_main_settings_and_the_others_and_the_hash_are_below_a_fold() {
     let mut run = run();
     run.set_preset("climb").expect("shipped");
-    let mut panel = EvolutionPanel::default();
-    let mut harness = Harness::builder()
-        .with_size(egui::vec2(theme::PANEL_WIDTH, 1600.0))
-        .build_ui_state(|ui, commands| panel.ui(ui, &run, |_, _| {}, commands), Vec::new());
-    harness.run();
-    for shown in ["Friction", "Rise", "Bend limit", "Initial step size"] {
-        assert!(harness.query_all_by_label_contains(shown).next().is_some(), "{shown}");
-    }
-    assert!(!shows(&harness, "Seed") && !shows(&harness, "Strategy"));
-    click(&mut harness, HOW_IT_LEARNS);
-    assert!(shows(&harness, "Seed") && shows(&harness, "Strategy"));
-}
-
-#[test]
-fn the_hash_of_a_finished_run_is_told_below_the_fold_and_by_a_command() {
-    let mut run = run();
     run.run_hash = Some(0xc0ffee);
     let hash = "Run hash 0000000000c0ffee";
     let mut panel = EvolutionPanel::default();
-    let mut harness =
-        testing::panel([400.0, 1600.0], |ui, commands| panel.ui(ui, &run, |_, _| {}, commands));
-    assert!(!shows(&harness, hash));
-    testing::clicked(&mut harness, HOW_IT_LEARNS);
-    harness.run();
-    assert!(shows(&harness, hash));
+    let mut harness = testing::panel([400.0, 1600.0], |ui| panel.ui(ui, &run, |_| ()));
+    for shown in ["Friction", "Rise", "Bend limit", "Size of first mutations"] {
+        assert!(harness.query_all_by_label_contains(shown).next().is_some(), "{shown}");
+    }
+    let below = ["Seed", "Strategy", hash];
+    assert!(below.iter().all(|text| !shows(&harness, text)));
+    click(&mut harness, METHOD);
+    assert_shows(&harness, &below);
     drop(harness);
     let mut notices = Notices::default();
     run.apply(&RunCommand::ShowHash, &mut notices).expect("finished");
@@ -245,7 +193,7 @@ fn an_invalid_value_of_a_hidden_section_is_ignored() {
         sheet.has_problem()
     };
     assert!(!is_wrong(&run, &mut sheet, true));
-    sheet.keep_wrong("evolution.halving.parents", "x", "4");
+    sheet.keep("evolution.halving.parents", "x".to_owned(), Some("wrong".to_owned()), "4");
     assert!(is_wrong(&run, &mut sheet, true));
     assert!(!is_wrong(&run, &mut sheet, false), "out of sight");
     run.set_field("evolution.halving.parents", "5").expect("allowed");
@@ -257,17 +205,12 @@ fn at_every_width_nothing_is_wider_than_the_panel() {
     let run = run();
     for width in [300.0, theme::PANEL_WIDTH, 459.0, 480.0, 900.0] {
         let mut panel = EvolutionPanel::default();
-        panel.unfold(&every_section());
-        panel.unfold(&[HOW_IT_LEARNS.to_owned()].into());
-        let size = egui::vec2(width, 4000.0);
-        let mut harness = Harness::builder().with_size(size).build_ui_state(
-            |ui, commands| {
-                theme::apply(ui.ctx());
-                panel.ui(ui, &run, |_, _| {}, commands);
-            },
-            Vec::new(),
-        );
-        harness.run();
+        panel.sheet.unfold(&every_section());
+        panel.sheet.unfold(&[METHOD_KEY.to_owned()].into());
+        let mut harness = testing::panel([width, 4000.0], |ui| {
+            theme::apply(ui.ctx());
+            panel.ui(ui, &run, |_| ());
+        });
         for title in ["Other strategies", "Torques", "Waves and gaits", "Random snakes"] {
             click(&mut harness, title);
         }
@@ -276,7 +219,7 @@ fn at_every_width_nothing_is_wider_than_the_panel() {
         }
         assert_nothing_is_wider_than(&harness, width);
         // Each section shows its settings when it is unfolded.
-        for label in ["Cooling", "Initial step size", "Columns and rows", "Neighbours"] {
+        for label in ["Cooling", "Size of first mutations", "Columns and rows", "Neighbours"] {
             assert!(harness.query_all_by_label(label).next().is_some(), "{label}");
         }
     }

@@ -28,7 +28,7 @@ pub(super) fn decision_view(
     if decision.joint.is_some() {
         explain(
             ui,
-            "Each joint has rules of its own. Click a limb to see those of the joint in front of it.",
+            "Each joint has rules of its own. Click a block to see those of the joint in front of it.",
         );
     }
     postures(ui, decision);
@@ -104,13 +104,11 @@ fn rules(ui: &mut egui::Ui, decision: &DecisionActivity, shows_all: &mut bool) {
     title(ui, &format!("Rules: {matching} of {} match", decision.rules.len()));
     check_box(ui, shows_all, "Also rules that do not match")
         .on_hover_text("List all rules; those that match are lit");
-    explain(
-        ui,
-        match decision.rules.iter().any(|rule| rule.fitness.is_some()) {
-            true => "Each predicts the worth of what it advises, and counts by its accuracy.",
-            false => "The strengths of those that match and advise the same add up.",
-        },
-    );
+    let meaning = match decision.rules.iter().any(|rule| rule.fitness.is_some()) {
+        true => "Each predicts the worth of what it advises, and counts by its accuracy.",
+        false => "The strengths of those that match and advise the same add up.",
+    };
+    explain(ui, meaning);
     let listed = decision.rules.iter().filter(|rule| *shows_all || rule.matches);
     let mut listed: Vec<&ActiveRule> = listed.collect();
     // Rules that have decided come first, then others that match. Within each group, the most influential rules come first.

@@ -16,12 +16,7 @@ use crate::studio::ui::theme;
 use stairs_map::{StairsMap, legend};
 
 /// Draws the section about the exam of a lane's snake.
-pub(super) fn exam(
-    ui: &mut egui::Ui,
-    lane: &Lane,
-    exams: &StairsExams,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn exam(ui: &mut egui::Ui, lane: &Lane, exams: &StairsExams) {
     ui.add_space(theme::GAP / 2.0);
     let name = title_text("Exam on unseen stairs");
     let header = egui::CollapsingHeader::new(name).id_salt("exam").default_open(true);
@@ -35,53 +30,47 @@ pub(super) fn exam(
                 for map in StairsMap::side_by_side(ui, grids, staged) {
                     if let Some(cell) = map.ui(ui) {
                         let watch = ExamCommand::Watch { suite: map.grid.suite, cell };
-                        commands.push(Command::Exam(watch));
+                        Command::Exam(watch).send(ui);
                     }
                 }
                 legend(ui, first, &staged.champion().trial);
                 if staged.is_on_stairs_of_exam() {
-                    own_stairs_button(ui, staged, commands);
+                    own_stairs_button(ui, staged);
                 } else {
                     explain(ui, "Click a cell to watch the snake on those stairs.");
                 }
             }
-            None => invitation(ui, staged, exams, commands),
+            None => invitation(ui, staged, exams),
         }
-        progress(ui, exams, commands);
+        progress(ui, exams);
     });
 }
 
 /// Draws a description of the exam, and the button that begins it.
-fn invitation(
-    ui: &mut egui::Ui,
-    staged: &StagedChampion,
-    exams: &StairsExams,
-    commands: &mut Vec<Command>,
-) {
+fn invitation(ui: &mut egui::Ui, staged: &StagedChampion, exams: &StairsExams) {
     if let Some(reason) = no_exam_because(staged) {
         return explain(ui, &reason);
     }
     if exams.progress().is_some() {
         return;
     }
-    let senses = staged.champion().genome.controller.kind().senses_surroundings();
+    let senses = staged.champion().genome.senses_surroundings();
     let again = if senses { ", with its senses and without them" } else { "" };
     let stairs = "Five rises, four treads, five distances to the first step";
     explain(ui, &format!("Can it climb other stairs than its own? {stairs}{again}."));
     let hint = "Simulates 30 s on each staircase, in the background: about half a minute";
     let examine = Command::Exam(ExamCommand::Examine);
-    CommandButton::new("Examine on 100 staircases", hint, examine).show(ui, commands);
+    CommandButton::new("Examine on 100 staircases", hint, examine).show(ui);
 }
 
 /// Draws the progress of the exam in progress, of any snake, and a button that cancels it.
-fn progress(ui: &mut egui::Ui, exams: &StairsExams, commands: &mut Vec<Command>) {
+fn progress(ui: &mut egui::Ui, exams: &StairsExams) {
     let Some((name, [done, trials])) = exams.progress() else { return };
     explain(ui, &format!("Examining {name}"));
     let share = done as f32 / trials.max(1) as f32;
     let words = format!("{done} of {trials} trials");
-    if cancellable_progress(ui, "Stop the exam", share, &words) {
-        commands.push(Command::Exam(ExamCommand::Cancel));
-    }
+    let cancel = ("Stop the exam", Command::Exam(ExamCommand::Cancel));
+    cancellable_progress(ui, cancel, share, &words);
 }
 
 #[cfg(test)]

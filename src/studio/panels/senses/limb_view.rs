@@ -23,16 +23,16 @@ const ROWS: [&str; 4] = ["neuron 1: bend", "neuron 2: twist", "neuron 3", "neuro
 pub(super) fn limb_view(ui: &mut egui::Ui, activity: &LimbActivity, limb: usize) {
     explain(
         ui,
-        "Each column is a limb, from the head to the tail; its colour shows what a neuron says.",
+        "Each column is a block, from the head to the tail; its colour shows what a neuron says.",
     );
     table(ui, activity, limb);
     let name = match limb {
         0 => "the head".to_owned(),
         limb if limb + 1 == activity.limbs.len() => "the tail".to_owned(),
-        limb => format!("limb {}", limb + 1),
+        limb => format!("block {}", limb + 1),
     };
     title(ui, &format!("Wiring of {name}"));
-    explain(ui, "Front and rear neurons are those of the neighbouring limbs, a step ago.");
+    explain(ui, "Front and rear neurons are those of the neighbouring blocks, a step ago.");
     if let Some(network) = activity.network(limb) {
         network_graph(ui, &network);
     }
@@ -81,7 +81,7 @@ fn table(ui: &mut egui::Ui, activity: &LimbActivity, selected: usize) {
             };
             let value = if is_off { String::new() } else { format!(": {}", decimals(*output, 2)) };
             let said = format!(
-                "Limb {}, neuron {}{purpose} ({}){value}",
+                "Block {}, neuron {}{purpose} ({}){value}",
                 limb + 1,
                 row + 1,
                 neuron.kind.name()

@@ -84,35 +84,29 @@ impl<'l> SensesView<'l> {
 }
 
 impl SensesPanel {
-    /// Draws the panel and collects the user's commands.
-    pub fn ui(
-        &mut self,
-        ui: &mut egui::Ui,
-        view: Option<&SensesView>,
-        exams: &StairsExams,
-        commands: &mut Vec<Command>,
-    ) {
+    /// Draws the panel and sends the user's commands.
+    pub fn ui(&mut self, ui: &mut egui::Ui, view: Option<&SensesView>, exams: &StairsExams) {
         title(ui, "Senses");
         let Some(view) = view else {
             explain(ui, "What the snake on the stage senses will appear here.");
-            return feeler_button(ui, commands);
+            return feeler_button(ui);
         };
-        lane_choice(ui, view, commands);
-        if !view.kind().senses_surroundings() {
+        lane_choice(ui, view);
+        if !view.lane.staged.champion().genome.senses_surroundings() {
             explain(ui, unsensing(view.kind()));
             let sensing = ControllerKind::ALL.iter().filter(|kind| kind.senses_surroundings());
             let titles = sensing.map(|kind| kind.title()).collect::<Vec<_>>().join(", ");
             let sensing = "Controllers that sense touch, balance and the stairs ahead";
             explain(ui, &format!("{sensing}: {titles}. Choose one in the Watch panel."));
-            feeler_button(ui, commands);
-            return exam(ui, view.lane, exams, commands);
+            feeler_button(ui);
+            return exam(ui, view.lane, exams);
         }
         let Some(rollout) = view.lane.replay.rollout() else {
             explain(ui, "A recording contains poses, but no senses.");
-            return exam(ui, view.lane, exams, commands);
+            return exam(ui, view.lane, exams);
         };
-        switches(ui, view, commands);
-        exam(ui, view.lane, exams, commands);
+        switches(ui, view);
+        exam(ui, view.lane, exams);
         let mut rollout = Cow::Borrowed(rollout);
         if rollout.perception().limbs.is_empty() {
             // Nothing is sensed before the first step. Without the step of a copy, the panel would be empty for a moment
@@ -158,14 +152,14 @@ fn unsensing(kind: ControllerKind) -> &'static str {
 const FEELER: &str = "feeler";
 
 /// Draws the button that shows a snake with senses.
-fn feeler_button(ui: &mut egui::Ui, commands: &mut Vec<Command>) {
+fn feeler_button(ui: &mut egui::Ui) {
     let show = Command::Library(LibraryCommand::Replay(SavePlace::Shipped(FEELER)));
-    let hint = "Replay a built-in champion whose limbs react to what they touch";
-    CommandButton::new("Show me a snake that feels", hint, show).show(ui, commands);
+    let hint = "Replay a built-in champion whose blocks react to what they touch";
+    CommandButton::new("Show me a snake that feels", hint, show).show(ui);
 }
 
 /// Draws the buttons that select the lane.
-fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
+fn lane_choice(ui: &mut egui::Ui, view: &SensesView) {
     if view.racers.len() < 2 {
         return;
     }
@@ -176,14 +170,14 @@ fn lane_choice(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>
             let name = egui::Button::selectable(is_shown, lane.staged.label()).truncate();
             let hint = "Show the senses of this snake";
             if ui.add(name).on_hover_text(hint).clicked() && !is_shown {
-                commands.push(Command::Stage(StageCommand::Focus(lane.number)));
+                Command::Stage(StageCommand::Focus(lane.number)).send(ui);
             }
         }
     });
 }
 
 /// Draws the switches that take senses away from a copy of the snake.
-fn switches(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
+fn switches(ui: &mut egui::Ui, view: &SensesView) {
     let organs = [
         ("Sight", SenseOrgan::Sight, "the gap to the next riser, its height, the clearance"),
         ("Touch", SenseOrgan::Touch, "touch, load, and resistance ahead"),
@@ -198,17 +192,14 @@ fn switches(ui: &mut egui::Ui, view: &SensesView, commands: &mut Vec<Command>) {
             );
             let field = format!("trial.agent.senses.{}", name.to_lowercase());
             let command = Command::Plan(PlanCommand::set(&field, &(!works).to_string()));
-            command_box(ui, works, (name, &hint), command, commands);
+            command_box(ui, works, (name, &hint), command);
         }
     });
-    let all = ActiveSenses::default();
-    explain(
-        ui,
-        match view.switched == all {
-            true => "Switch one off: a copy without it walks beside this snake.",
-            false => "Senses that are off keep their last values, marked as frozen.",
-        },
-    );
+    let effect = match view.switched == ActiveSenses::default() {
+        true => "Switch one off: a copy without it walks beside this snake.",
+        false => "Senses that are off keep their last values, marked as frozen.",
+    };
+    explain(ui, effect);
 }
 
 #[cfg(test)]

@@ -14,33 +14,33 @@ use snakes_core::score::Rollout;
 /// Senses of the snake as a whole.
 const OF_SNAKE: [ShownSense; 4] = [
     (SenseKind::Yaw, "Direction of the head: 0 straight towards the stairs"),
-    (SenseKind::SpeedAhead, "Speed of the middle limb towards the stairs"),
-    (SenseKind::SpeedUp, "Speed of the middle limb upwards"),
+    (SenseKind::SpeedAhead, "Speed of the middle block towards the stairs"),
+    (SenseKind::SpeedUp, "Speed of the middle block upwards"),
     (
         SenseKind::Aside,
-        "Distance of the middle limb from the middle of the stairs: 1 at their edge",
+        "Distance of the middle block from the middle of the stairs: 1 at their edge",
     ),
 ];
 /// Senses of a limb, grouped by organ.
 const OF_LIMB: [ShownSense; 8] = [
     (
         SenseKind::Gap,
-        "Way from the limb's front face to the next riser; full without a riser ahead",
+        "Way from the block's front face to the next riser; full without a riser ahead",
     ),
     (
         SenseKind::StepUp,
-        "Height of the next tread over the limb's lowest corner; 0 without a riser ahead",
+        "Height of the next tread over the block's lowest corner; 0 without a riser ahead",
     ),
-    (SenseKind::Clearance, "Height of the limb's lowest corner over the surface below it"),
-    (SenseKind::Touch, "Whether the limb touches ground or stairs"),
-    (SenseKind::Load, "Force of the contacts upwards; the bar is half full at a limb's weight"),
+    (SenseKind::Clearance, "Height of the block's lowest corner over the surface below it"),
+    (SenseKind::Touch, "Whether the block touches ground or stairs"),
+    (SenseKind::Load, "Force of the contacts upwards; the bar is half full at a block's weight"),
     (
         SenseKind::Blocked,
-        "Force of the contacts against the direction in which the limb points; the bar is half full at a limb's \
+        "Force of the contacts against the direction in which the block points; the bar is half full at a block's \
          weight",
     ),
-    (SenseKind::Pitch, "Slope of the limb: positive with its front end up"),
-    (SenseKind::Roll, "Turn of the limb about its length"),
+    (SenseKind::Pitch, "Slope of the block: positive with its front end up"),
+    (SenseKind::Roll, "Turn of the block about its length"),
 ];
 /// Sense of a joint.
 const OF_JOINT: ShownSense = (SenseKind::Bend, "Angle of the joint's bend");
@@ -59,14 +59,14 @@ pub(super) fn readouts(ui: &mut egui::Ui, view: &SensesView, rollout: &Rollout) 
         last if last + 1 == limbs => ", the tail",
         _ => "",
     };
-    title(ui, &format!("Limb {} of {limbs}{part}", view.limb + 1));
+    title(ui, &format!("Block {} of {limbs}{part}", view.limb + 1));
     let limb_color = match view.limb % 2 {
         0 => theme::flat(palette.red_limb),
         _ => theme::flat(palette.blue_limb),
     };
     OF_LIMB.into_iter().for_each(|sense| row(ui, rollout, sense, view.limb, limb_color));
     if !view.is_selected {
-        ui.label(weak(ui, "Click a limb on the stage to read its senses.").small());
+        ui.label(weak(ui, "Click a block on the stage to read its senses.").small());
     }
     title(ui, "Whole snake");
     OF_SNAKE.into_iter().for_each(|sense| row(ui, rollout, sense, 0, palette.accent));

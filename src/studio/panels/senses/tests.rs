@@ -30,7 +30,7 @@ fn panel(lane: &Lane, limb: usize) -> Sent<'_> {
 /// Creates the panel in a window of this height, in points, in which it scrolls.
 fn panel_in_window(lane: &Lane, limb: usize, height: f32) -> Sent<'_> {
     let mut panel = SensesPanel::default();
-    testing::panel([320.0, height], move |ui, commands| {
+    testing::panel([320.0, height], move |ui| {
         theme::apply(ui.ctx());
         let view = SensesView {
             lane,
@@ -40,7 +40,7 @@ fn panel_in_window(lane: &Lane, limb: usize, height: f32) -> Sent<'_> {
             switched: lane.trial().agent.senses,
         };
         let area = egui::ScrollArea::vertical().auto_shrink(false);
-        area.show(ui, |ui| panel.ui(ui, Some(&view), &StairsExams::default(), commands));
+        area.show(ui, |ui| panel.ui(ui, Some(&view), &StairsExams::default()));
     })
 }
 
@@ -51,16 +51,16 @@ fn the_readouts_of_the_chosen_limb_have_units_and_fit() {
     let head = panel_of(0);
     let senses = lane.replay.rollout().expect("simulated").perception();
     let gap_m = senses.limbs[0].gap * 2.0;
-    assert!(shows(&head, "Limb 1 of 5, the head"));
+    assert!(shows(&head, "Block 1 of 5, the head"));
     let gap = if gap_m < 2.0 { format!("Gap: {gap_m:.2} m") } else { "Gap: ≥ 2.00 m".to_owned() };
     assert!(shows(&head, &gap), "{gap}");
     assert_shows(
         &head,
-        &["Touch: ", "Load: ", "Yaw: ", "Speed ahead: ", "Joint 4 bend: ", "Click a limb"],
+        &["Touch: ", "Load: ", "Yaw: ", "Speed ahead: ", "Joint 4 bend: ", "Click a block"],
     );
     assert!(!shows(&head, "frozen"));
     assert_nothing_is_wider_than(&head, 320.0);
-    assert!(shows(&panel_of(4), "Limb 5 of 5, the tail"));
+    assert!(shows(&panel_of(4), "Block 5 of 5, the tail"));
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn every_network_is_drawn_with_its_nodes_and_reflexes_are_listed_by_sense() {
     let reflexes: &[&str] = &["Joint 2: what each sense adds", "front touch: ", "Target moved: "];
     for (kind, labels) in [
         (ControllerKind::Modular, &["front step up "][..]),
-        (ControllerKind::Central, &["limb 1 gap "]),
+        (ControllerKind::Central, &["block 1 gap "]),
         (ControllerKind::Ctrnn, &["neuron 1: bend target "]),
         (ControllerKind::Grown, &["head step up "]),
         (ControllerKind::Reflex, reflexes),
@@ -205,7 +205,7 @@ fn waves_and_the_rules_that_chose_them_are_shown() {
 #[test]
 fn the_neurons_of_all_limbs_are_shown_and_the_wiring_of_the_selected_one() {
     let lane = lane_of(ControllerKind::LimbNeurons, &[], |_| ());
-    for (limb, title) in [(0, "the head"), (2, "limb 3"), (4, "the tail")] {
+    for (limb, title) in [(0, "the head"), (2, "block 3"), (4, "the tail")] {
         let panel = panel(&lane, limb);
         assert!(shows(&panel, &format!("Wiring of {title}")));
         let activity = lane.replay.rollout().expect("simulated").activity(0);
@@ -216,10 +216,10 @@ fn the_neurons_of_all_limbs_are_shown_and_the_wiring_of_the_selected_one() {
         }
         for limb in 1..=5 {
             for neuron in 1..=4 {
-                assert!(shows(&panel, &format!("Limb {limb}, neuron {neuron}")));
+                assert!(shows(&panel, &format!("Block {limb}, neuron {neuron}")));
             }
         }
-        assert!(!shows(&panel, "Limb 5, neuron 1, bend target"), "no joint is behind it");
+        assert!(!shows(&panel, "Block 5, neuron 1, bend target"), "no joint is behind it");
         assert_nothing_is_wider_than(&panel, 320.0);
     }
 }

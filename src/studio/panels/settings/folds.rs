@@ -1,6 +1,7 @@
 //! Basic and advanced settings of a section. The advanced settings are below a fold, except those with unusual values,
 //! so that what is special about a surface is always visible.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use bevy_egui::egui;
@@ -13,8 +14,8 @@ use snakes_core::schema::{ListedSetting, Section};
 
 impl Sheet {
     /// Unfolds the advanced settings of the sections with these titles.
-    pub fn unfold(&mut self, sections: impl IntoIterator<Item = String>) {
-        self.unfolded.extend(sections);
+    pub fn unfold(&mut self, sections: &BTreeSet<String>) {
+        self.unfolded.extend(sections.iter().cloned());
     }
 
     /// Draws the settings of a section, with the advanced ones below a fold, and the section's reset button.
@@ -80,11 +81,11 @@ mod tests {
     /// Creates the section of the surface, with these sections unfolded.
     fn surface<'a>(run: &'a CurrentRun, unfolded: &[&str]) -> Sent<'a> {
         let mut sheet = Sheet::default();
-        sheet.unfold(unfolded.iter().map(|title| (*title).to_owned()));
-        panel([400.0, 900.0], move |ui, commands| {
+        sheet.unfold(&unfolded.iter().map(|title| (*title).to_owned()).collect());
+        panel([400.0, 900.0], move |ui| {
             sheet.begin(ui, run);
             sheet.section(ui, Trial::SURFACE);
-            sheet.send(commands);
+            sheet.send(ui);
         })
     }
 

@@ -70,9 +70,9 @@ impl Sheet {
         }
     }
 
-    /// Moves the user's commands to `commands`. Must be called after everything is drawn.
-    pub fn send(&mut self, commands: &mut Vec<Command>) {
-        commands.append(&mut self.sent);
+    /// Sends the user's commands. Must be called after everything is drawn.
+    pub fn send(&mut self, ui: &egui::Ui) {
+        Command::send_all(self.sent.drain(..), ui);
     }
 
     /// Returns the settings of the next run.
@@ -87,15 +87,9 @@ impl Sheet {
     }
 
     /// Stores unfinished or invalid text.
-    pub(super) fn keep(&mut self, id: &str, text: String, problem: Option<String>, beside: &str) {
+    pub fn keep(&mut self, id: &str, text: String, problem: Option<String>, beside: &str) {
         let (beside, seen_in) = (beside.to_owned(), self.drawn_in);
         self.typed.insert(id.to_owned(), Typed { text, problem, beside, seen_in });
-    }
-
-    /// Stores invalid text, for tests.
-    #[cfg(test)]
-    pub fn keep_wrong(&mut self, id: &str, text: &str, beside: &str) {
-        self.keep(id, text.to_owned(), Some("wrong".to_owned()), beside);
     }
 
     /// Returns the sections of those settings of the next run whose full names begin with `prefix`.
@@ -147,7 +141,7 @@ impl Sheet {
         let name = &self.values.preset_name;
         let hint = format!("Reset all settings of \"{}\" to the preset {name}", section.title);
         let back = Command::Plan(PlanCommand::SetFields(back));
-        CommandButton::small("Reset section", hint, back).show(ui, &mut self.sent);
+        self.sent.extend(CommandButton::new("Reset section", hint, back).small().pressed(ui));
     }
 
     /// Draws a setting.

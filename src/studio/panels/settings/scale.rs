@@ -157,7 +157,8 @@ fn round_step(width: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use snakes_core::schema::{SettingKind, list};
+    use crate::studio::panels::settings::every_setting;
+    use snakes_core::schema::SettingKind;
 
     fn scale(least: f32, most: f32, logarithmic_from: Option<f32>) -> Scale {
         Scale { least, most, logarithmic_from, is_angle: false }
@@ -170,6 +171,8 @@ mod tests {
         assert!((friction.share(0.01) - ZERO_SHARE).abs() < 1.0e-3, "{}", friction.share(0.01));
         assert!(friction.share(0.1) > 0.35, "{}", friction.share(0.1));
         assert_eq!(friction.share(10.0), 1.0);
+        let linear = scale(0.0, 2.0, None);
+        assert_eq!([0.0, 0.5, 1.5, 2.0].map(|value| linear.share(value)), [0.0, 0.25, 0.75, 1.0]);
     }
 
     #[test]
@@ -182,23 +185,12 @@ mod tests {
     }
 
     #[test]
-    fn a_linear_scale_has_a_few_round_marks() {
-        let shares = |scale: Scale| -> Vec<f32> {
-            scale.marks().into_iter().map(|value| scale.share(value)).collect()
-        };
-        assert_eq!(shares(scale(0.0, 1.0, None)).len(), 6);
-        assert_eq!(shares(scale(0.0, 2.0, None)), [0.0, 0.25, 0.5, 0.75, 1.0]);
-        let angle = Scale { is_angle: true, ..scale(0.0, 171.88, None) };
-        let degrees: Vec<f32> =
-            shares(angle).into_iter().map(|share| (share * 171.88).round()).collect();
-        assert_eq!(degrees, [0.0, 45.0, 90.0, 135.0]);
-    }
-
-    #[test]
     fn a_linear_scale_has_round_numbers_and_a_logarithmic_one_has_zero_and_each_decade() {
         let rail = egui::Rect::from_min_size(egui::pos2(10.0, 10.0), egui::vec2(260.0, 18.0));
         for (scale, expected) in [
-            (scale(0.0, 2.0, None), &["0", "2", "0.5", "1", "1.5"][..]),
+            (scale(0.0, 1.0, None), &["0", "1", "0.2", "0.4", "0.6", "0.8"][..]),
+            (scale(0.0, 2.0, None), &["0", "2", "0.5", "1", "1.5"]),
+            (Scale { is_angle: true, ..scale(0.0, 171.88, None) }, &["0", "135", "45", "90"]),
             (scale(0.0, 10.0, Some(0.01)), &["0", "10", "0.01", "0.1", "1"]),
             (scale(0.05, 5.0, Some(0.05)), &["0.05", "5", "0.1", "1"]),
             (scale(0.0, 0.1, Some(1.0e-6)), &["0", "0.1"]),
@@ -214,11 +206,13 @@ mod tests {
     }
 
     #[test]
-    fn every_slider_has_a_few_marks_and_the_place_that_egui_gives_its_value() {
-        for listed in list(&snakes_core::evolve::Settings::default()) {
+    fn every_slider_has_a_few_marks_in_order_and_ends_within_the_range_of_its_setting() {
+        for listed in every_setting() {
             let SettingKind::Number(range) = listed.setting.kind else { continue };
             let range = listed.setting.shown_range(&range);
-            let Some(ends) = range.slider else { continue };
+            let Some(ends @ [from, to]) = range.slider else { continue };
+            let is_within = range.least <= from && from < to && to <= range.most;
+            assert!(is_within, "{}: {ends:?}", listed.path);
             let scale = Scale::of(&range, ends, listed.setting.shown_unit());
             let marks = scale.marks();
             assert!((2..=9).contains(&marks.len()), "{}: {}", listed.path, marks.len());

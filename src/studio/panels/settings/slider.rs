@@ -114,26 +114,22 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_of_the_world_takes_effect_while_its_slider_moves() {
-        let [held, released] = dragged("trial.surface.bounce", "Bounce", 60, 60);
-        assert!((3..=4).contains(&held.len()), "about three times in a second: {held:?}");
-        assert!(held.windows(2).all(|pair| pair[0] < pair[1]), "it follows: {held:?}");
-        assert_eq!(released.len(), 1, "and the last value on release");
-        assert!(released[0] > held[held.len() - 1]);
-    }
-
-    #[test]
-    fn a_setting_of_the_world_takes_effect_once_when_its_slider_rests() {
-        let [held, released] = dragged("trial.surface.bounce", "Bounce", 6, 20);
-        assert_eq!((held.len(), released.len()), (1, 0), "{held:?}, {released:?}");
-    }
-
-    #[test]
-    fn other_settings_wait_until_their_slider_rests_or_is_released() {
-        let field = "evolution.cma_es.step";
-        let [held, released] = dragged(field, "Initial step size", 60, 60);
-        assert_eq!((held.len(), released.len()), (0, 1));
-        let [held, released] = dragged(field, "Initial step size", 6, 40);
-        assert_eq!((held.len(), released.len()), (1, 0));
+    fn a_setting_of_the_world_follows_its_slider_and_others_wait_until_it_rests_or_is_released() {
+        let (bounce, step) = (
+            ("trial.surface.bounce", "Bounce"),
+            ("evolution.cma_es.step", "Size of first mutations"),
+        );
+        for ((field, label), moving, frames, while_held, on_release) in [
+            // About three times in a second.
+            (bounce, 60, 60, 3..=4, 1),
+            (bounce, 6, 20, 1..=1, 0),
+            (step, 60, 60, 0..=0, 1),
+            (step, 6, 40, 1..=1, 0),
+        ] {
+            let [held, released] = dragged(field, label, moving, frames);
+            assert!(while_held.contains(&held.len()), "{field}, {moving}: {held:?}");
+            assert_eq!(released.len(), on_release, "{field}, {moving}: {released:?}");
+            assert!(held.iter().chain(&released).is_sorted_by(|a, b| a < b), "it follows");
+        }
     }
 }

@@ -10,7 +10,7 @@ use super::*;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::panels::testing::{self, Sent, set};
 use crate::studio::state::current_run::{CurrentRun, prepared_run};
-use snakes_core::evolve::{Settings, fields, with_field, with_fields};
+use snakes_core::evolve::{fields, with_field, with_fields};
 use snakes_core::schema::{
     ListedSetting, NumberRange, Parts, Section, SettingKind, SettingValue, list,
 };
@@ -88,28 +88,19 @@ fn panel_of<'a>(run: &'a CurrentRun, field: &str) -> Sent<'a> {
     let all = list(run.next_settings());
     let listed = all.into_iter().find(|listed| listed.path == field).expect("a setting");
     let mut sheet = Sheet::default();
-    let builder = Harness::builder().with_size(egui::vec2(320.0, 400.0));
-    // Frames are so short that a slider does not come to rest within a drag.
-    let mut panel = builder.with_step_dt(1.0 / 60.0).build_ui_state(
-        move |ui, commands| {
-            sheet.begin(ui, run);
-            sheet.entry(ui, &listed);
-            sheet.send(commands);
-        },
-        Vec::new(),
-    );
-    panel.run();
-    panel
+    testing::panel_at_60_hz([320.0, 400.0], move |ui| {
+        sheet.begin(ui, run);
+        sheet.entry(ui, &listed);
+        sheet.send(ui);
+    })
 }
 
 /// Role of the only field.
 const FIELD: egui::accesskit::Role = egui::accesskit::Role::TextInput;
 
-/// Types into the only field, and presses Enter.
+/// Types into the only field, whose text is selected when it gets the focus, and presses Enter.
 fn type_into(harness: &mut Sent<'_>, text: &str) {
     harness.get_by_role(FIELD).focus();
-    harness.run();
-    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
     harness.run();
     harness.get_by_role(FIELD).type_text(text);
     harness.run();
@@ -142,15 +133,13 @@ fn every_setting_is_shown_once_by_the_panels() {
 fn every_control_sends_the_value_that_was_entered() {
     let run = run_with_all_given();
     let settings = run.next_settings();
-    let values: Vec<(String, String)> = fields(settings);
     for listed in list(settings) {
-        let full = listed.path;
-        let now = &values.iter().find(|(field, _)| *field == full).expect("there").1;
+        let (full, now) = (listed.path, listed.value.to_string());
         let mut panel = panel_of(&run, &full);
         let expected = match &listed.setting.kind {
             SettingKind::Number(range) => {
                 let is_allowed = |text: &str| with_field(settings, &full, text).is_ok();
-                let text = another(range, now, is_allowed);
+                let text = another(range, &now, is_allowed);
                 // The user types the value in the unit of panels.
                 let shown = listed.setting.shown_text(&text);
                 type_into(&mut panel, &shown);
@@ -190,48 +179,7 @@ fn every_control_sends_the_value_that_was_entered() {
 }
 
 #[test]
-fn the_ranges_in_tooltips_are_those_of_the_settings() {
-    let run = run_with_all_given();
-    let settings = run.next_settings();
-    for listed in list(settings) {
-        let (full, kind) = (listed.path, listed.setting.kind);
-        let (SettingKind::Number(range) | SettingKind::List(range)) = kind else { continue };
-        let (least, most) = (range.least, range.most);
-        let is_list = matches!(kind, SettingKind::List(_));
-        let text = |value: f32| if is_list { format!("[{value}]") } else { value.to_string() };
-        let below = least - least.abs() * 0.5 - if least == 0.0 { 1.0 } else { 0.0 };
-        let above = if range.is_whole { most + 1.0 } else { most * 1.1 + 1.0 };
-        for wrong in [below, above] {
-            if range.is_whole && wrong < 0.0 {
-                continue;
-            }
-            let wrong = if range.is_whole { wrong.floor() } else { wrong };
-            let refused = with_field(settings, &full, &text(wrong)).expect_err(&full);
-            assert_eq!(refused.allowed, range.in_words(), "{full} = {wrong}");
-        }
-        let ends = range.slider.unwrap_or([range.least, range.most]);
-        assert!(least <= ends[0] && ends[0] < ends[1] && ends[1] <= most, "{full}");
-    }
-}
-
-#[test]
-fn drop_down_lists_are_complete_and_every_choice_has_a_sentence() {
-    let settings = Settings::default();
-    for listed in list(&settings) {
-        let full = listed.path;
-        let SettingKind::Choice(choices) = listed.setting.kind else { continue };
-        let choices = choices();
-        let names: Vec<&str> = choices.iter().map(|choice| choice.name).collect();
-        let refused = with_field(&settings, &full, "nothing-of-the-sort").expect_err(&full);
-        assert_eq!(names.join(", "), refused.allowed, "{full}");
-        for choice in choices {
-            assert!(choice.sentence.len() > 15 && choice.sentence.ends_with('.'), "{choice:?}");
-        }
-    }
-}
-
-#[test]
-fn every_setting_has_a_label_a_hint_and_a_unit() {
+fn every_setting_has_a_label_a_hint_and_a_unit_and_every_choice_a_sentence() {
     let mut labels = BTreeSet::new();
     for listed in every_setting() {
         let ListedSetting { path: full, section, setting: entry, .. } = listed;
@@ -243,6 +191,10 @@ fn every_setting_has_a_label_a_hint_and_a_unit() {
         assert!(!has_unit || says_unit, "{full} has a unit");
         // Labels are unique within a section.
         assert!(labels.insert((section.title, entry.label)), "{full}");
+        let SettingKind::Choice(choices) = entry.kind else { continue };
+        for choice in choices() {
+            assert!(choice.sentence.len() > 15 && choice.sentence.ends_with('.'), "{choice:?}");
+        }
     }
 }
 
@@ -268,7 +220,7 @@ fn clicked(run: &CurrentRun, field: &str, label: &str) -> Vec<Command> {
 fn one_value_becomes_a_list_and_back() {
     let mut run = prepared_run();
     let width = "trial.agent.limb_width_m";
-    let switch = "Limb width: limb by limb";
+    let switch = "Block width: block by block";
     let commands = clicked(&run, width, switch);
     assert_eq!(commands, [set(width, "[1, 1, 1, 1, 1]")]);
     run.set_field(width, "[1.5, 1, 1, 1, 1]").expect("allowed");
@@ -284,7 +236,7 @@ fn one_limb_changes_without_the_others() {
     let mut run = prepared_run();
     run.set_field("trial.agent.limb_width_m", "[1.5, 1, 1, 1, 1]").expect("allowed");
     let mut panel = panel_of(&run, "trial.agent.limb_width_m");
-    let slider = "Limb width of limb 3";
+    let slider = "Block width of block 3";
     let role = egui::accesskit::Role::Slider;
     let rail = panel.get_by_role_and_label(role, slider).rect();
     panel.drag_at(rail.left_center() + egui::vec2(6.0, 0.0));
@@ -318,18 +270,9 @@ fn only_settings_that_allow_a_list_have_one_value_per_part() {
     for listed in list(run.next_settings()) {
         let full = listed.path;
         let SettingKind::Number(range) = listed.setting.kind else { continue };
-        let count = match range.parts {
-            Parts::One | Parts::Limbs(_) => 5,
-            Parts::Joints(_) => 4,
-            Parts::Steps(_) => 10,
-        };
-        let now = fields(run.next_settings()).into_iter().find(|(field, _)| *field == full);
-        let value: f32 = now.expect("there").1.parse().expect("a number");
-        let listed = with_field(
-            run.next_settings(),
-            &full,
-            &SettingValue::List(vec![value; count]).to_string(),
-        );
+        let value: f32 = listed.value.to_string().parse().expect("a number");
+        let list = SettingValue::List(vec![value; range.parts.count().max(2)]).to_string();
+        let listed = with_field(run.next_settings(), &full, &list);
         assert_eq!(listed.is_ok(), range.parts != Parts::One, "{full}");
     }
 }
@@ -338,15 +281,13 @@ fn only_settings_that_allow_a_list_have_one_value_per_part() {
 fn sliders_contain_the_values_of_the_built_in_presets() {
     let mut beyond = Vec::new();
     for preset in snakes_core::save::shipped_presets().expect("well formed") {
-        let values = fields(&preset.settings);
-        for listed in every_setting() {
+        for listed in list(&preset.settings) {
             let (full, entry) = (listed.path, listed.setting);
             let SettingKind::Number(NumberRange { slider: Some([least, most]), .. }) = entry.kind
             else {
                 continue;
             };
-            let now = values.iter().find(|(field, _)| *field == full);
-            let Some(value) = now.and_then(|(_, text)| text.parse::<f32>().ok()) else { continue };
+            let Ok(value) = listed.value.to_string().parse::<f32>() else { continue };
             // Large frictions, such as 150 in the engine's manual, all have a similar effect.
             if !(least..=most).contains(&value) && entry.label != "Friction" {
                 beyond.push(format!("{full} = {value} of {}", preset.name));

@@ -156,7 +156,7 @@ mod tests {
             (
                 "trial.agent.limbs",
                 "6",
-                "Limb width is a list of 5; allowed: one value, or a list of 6",
+                "Block width is a list of 5; allowed: one value, or a list of 6",
             ),
         ] {
             assert_eq!(typed(field, text), Err(message.to_owned()));

@@ -3,7 +3,7 @@
 use bevy_egui::egui;
 
 use crate::studio::commands::{Command, PlanCommand};
-use crate::studio::panels::own_files::known_files;
+use crate::studio::panels::own_files::{file_row, own_files};
 use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
@@ -19,12 +19,8 @@ fn in_words(stairs: &Stairs) -> String {
     format!("{} {} steps", stairs.steps, if is_equal { "equal" } else { "unequal" })
 }
 
-/// Draws the selection of stairs, and collects the user's commands.
-pub(in crate::studio::panels) fn stairs_choice(
-    ui: &mut egui::Ui,
-    run: &CurrentRun,
-    commands: &mut Vec<Command>,
-) {
+/// Draws the selection of stairs, and sends the user's commands.
+pub(in crate::studio::panels) fn stairs_choice(ui: &mut egui::Ui, run: &CurrentRun) {
     let settings = run.next_settings();
     let present = name_of(run, &settings.trial.stairs);
     let mut chosen: Option<&NamedStairs> = None;
@@ -35,16 +31,22 @@ pub(in crate::studio::panels) fn stairs_choice(
         .height(theme::list_height(ui))
         .show_ui(ui, |ui| {
             let known = &run.context.stairs;
-            chosen = known_files(ui, known, "Your stairs", present, |named| &named.about);
+            for built_in in known.built_in() {
+                if file_row(ui, &built_in.name, present, &built_in.about) {
+                    chosen = Some(built_in);
+                }
+            }
+            let own = own_files(ui, known, "Your stairs", present, |named| &named.about);
+            chosen = own.or(chosen);
         });
     let list = named(list.response, egui::WidgetType::ComboBox, "Known stairs");
     if list.clicked() {
         // The folder may contain new files.
-        commands.push(Command::Plan(PlanCommand::ListStairs));
+        Command::Plan(PlanCommand::ListStairs).send(ui);
     }
     list.on_hover_text("Replaces all settings of the stairs");
     if let Some(named) = chosen {
-        commands.extend(replacement(settings, &named.stairs));
+        Command::send_all(replacement(settings, &named.stairs), ui);
     }
 }
 
@@ -90,9 +92,7 @@ mod tests {
             assert_eq!(name_of(&run, stairs), Some(name.as_str()));
             assert_eq!(replacement(run.next_settings(), stairs), None);
         }
-        let mut panel = panel([theme::PANEL_WIDTH, 400.0], move |ui, commands| {
-            stairs_choice(ui, &run, commands);
-        });
+        let mut panel = panel([theme::PANEL_WIDTH, 400.0], move |ui| stairs_choice(ui, &run));
         panel.get_by_role_and_label(egui::accesskit::Role::ComboBox, "Known stairs").click();
         panel.run();
         clicked(&mut panel, "ramps");

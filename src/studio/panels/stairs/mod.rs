@@ -48,19 +48,18 @@ pub(super) struct StairsPanel {
 }
 
 impl StairsPanel {
-    /// Draws the panel and collects the user's commands. `lane` is the selected lane on the stage.
+    /// Draws the panel and sends the user's commands. `lane` is the selected lane on the stage.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
         run: &CurrentRun,
         history: &UndoHistory,
         lane: Option<&Lane>,
-        commands: &mut Vec<Command>,
     ) {
         let next = &run.next_settings().trial;
         self.forget_what_is_over(ui, &next.stairs);
         let stairs = self.draft.clone().unwrap_or_else(|| next.stairs.clone());
-        title_and(ui, "Stairs", |ui| undo_buttons(ui, history, commands));
+        title_and(ui, "Stairs", |ui| undo_buttons(ui, history));
         let strategy = run.next_settings().evolution.strategy.info();
         if strategy.evolves_stairs {
             let title = strategy.title;
@@ -73,7 +72,7 @@ impl StairsPanel {
                 "The stairs of the next run. The stage shows each change beside the original.",
             );
         }
-        self.files(ui, run, lane, commands);
+        self.files(ui, run, lane);
         let profile = Profile {
             stairs: &stairs,
             next: &next.stairs,
@@ -93,7 +92,7 @@ impl StairsPanel {
         let hint =
             "Width, landing, nosing and the other settings of the stairs, in the Change panel";
         let find = Command::Window(WindowCommand::FindSetting("Stairs"));
-        CommandButton::new("More settings", hint, find).show(ui, commands);
+        CommandButton::new("More settings", hint, find).show(ui);
         table(ui, &stairs, self.pointed, &mut response);
         let StairsResponse { pointed, edit } = response;
         if pointed != self.pointed {
@@ -102,20 +101,14 @@ impl StairsPanel {
         }
         let is_cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
         if let Some(edit) = edit.filter(|_| !is_cancelled) {
-            self.take(edit, run, commands);
+            self.take(ui, edit, run);
         }
     }
 
     /// Draws the selection of known stairs, and the buttons that save stairs or take them from the stage.
-    fn files(
-        &mut self,
-        ui: &mut egui::Ui,
-        run: &CurrentRun,
-        lane: Option<&Lane>,
-        commands: &mut Vec<Command>,
-    ) {
+    fn files(&mut self, ui: &mut egui::Ui, run: &CurrentRun, lane: Option<&Lane>) {
         let stairs = &run.next_settings().trial.stairs;
-        ui.horizontal_wrapped(|ui| stairs_choice(ui, run, commands));
+        ui.horizontal_wrapped(|ui| stairs_choice(ui, run));
         ui.horizontal_wrapped(|ui| {
             let hint = "Save these stairs as a file, to use them again and to pass them on";
             let suggestion = || {
@@ -127,15 +120,15 @@ impl StairsPanel {
             let refusal = Some("Save stairs first").filter(|_| !folder.is_dir());
             let hint = "Show the files of your stairs. File > Import adds the stairs of others";
             let show = Command::File(FileCommand::OpenFolder(folder));
-            CommandButton::new("Show files", hint, show).unless(refusal).show(ui, commands);
+            CommandButton::new("Show files", hint, show).unless(refusal).show(ui);
             let staged = lane.map(|lane| &lane.trial().stairs);
             if let Some(use_it) = staged.and_then(|of| replacement(run.next_settings(), of)) {
                 let hint = "The next run gets the stairs of the selected snake on the stage";
-                CommandButton::new("Use those on the stage", hint, use_it).show(ui, commands);
+                CommandButton::new("Use those on the stage", hint, use_it).show(ui);
             }
         });
         if let Some(name) = self.name.field(ui, &run.context.stairs) {
-            commands.push(Command::Plan(PlanCommand::StoreStairs(name)));
+            Command::Plan(PlanCommand::StoreStairs(name)).send(ui);
         }
     }
 
@@ -155,7 +148,7 @@ impl StairsPanel {
 
     /// Stores a change as the draft, and applies the draft to the next run when it is complete. A change that is not
     /// allowed does not affect the stairs.
-    fn take(&mut self, edit: StairsEdit, run: &CurrentRun, commands: &mut Vec<Command>) {
+    fn take(&mut self, ui: &egui::Ui, edit: StairsEdit, run: &CurrentRun) {
         match check(&edit.stairs) {
             Ok(()) => {
                 self.problem = None;
@@ -166,7 +159,7 @@ impl StairsPanel {
         if edit.is_complete
             && let Some(stairs) = self.draft.take()
         {
-            commands.extend(replacement(run.next_settings(), &stairs));
+            Command::send_all(replacement(run.next_settings(), &stairs), ui);
             // The reason why the drag could go no further stays visible.
             self.before = Some(stairs);
         }

@@ -26,8 +26,8 @@ fn editing(stairs: &Stairs, width: f32) -> Window {
     set(&mut run, stairs);
     let draw = |ui: &mut egui::Ui, of: &mut Editing| {
         theme::apply(ui.ctx());
-        let mut commands = Vec::new();
-        of.panel.ui(ui, &of.run, &UndoHistory::default(), None, &mut commands);
+        of.panel.ui(ui, &of.run, &UndoHistory::default(), None);
+        let commands = Command::take_sent(ui);
         for command in &commands {
             if let Command::Plan(PlanCommand::SetFields(changes)) = command {
                 of.run.set_fields(&borrowed(changes)).expect("allowed");
@@ -64,7 +64,7 @@ fn centre(window: &Window, name: &str) -> egui::Pos2 {
     window.get_by_label(name).rect().center()
 }
 
-/// Drags the element with this name by some points, in many small steps.
+/// Drags the element with this name by some points, in many small steps, and lets the pointer rest before it is released.
 fn drag(window: &mut Window, name: &str, by: egui::Vec2) {
     let from = centre(window, name);
     window.hover_at(from);
@@ -75,6 +75,7 @@ fn drag(window: &mut Window, name: &str, by: egui::Vec2) {
         window.hover_at(from + by * (f32::from(share) / 8.0));
         window.run_steps(1);
     }
+    window.run_steps(20);
     window.drop_at(from + by);
     window.run_steps(3);
 }
@@ -101,16 +102,7 @@ fn the_first_and_the_last_edge_follow_a_pointer_that_rests() {
         let mut window = editing(&house(), theme::PANEL_WIDTH);
         let [a, b] = ["Edge of step 2", "Edge of step 3"].map(|name| centre(&window, name));
         let points_per_m = (b.x - a.x) / 0.8;
-        let from = centre(&window, edge);
-        let to = from + egui::vec2(by_m[0], -by_m[1]) * points_per_m;
-        window.drag_at(from);
-        window.run_steps(2);
-        for _ in 0..20 {
-            window.hover_at(to);
-            window.run_steps(1);
-        }
-        window.drop_at(to);
-        window.run_steps(3);
+        drag(&mut window, edge, egui::vec2(by_m[0], -by_m[1]) * points_per_m);
         let [y_m, z_m] = house().handle_m(step);
         let expected = house().with_handle_at(step, [y_m + by_m[0], z_m + by_m[1]]);
         assert_eq!(stairs(&window), expected, "{edge}");

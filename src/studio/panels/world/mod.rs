@@ -3,8 +3,6 @@
 pub mod presets;
 pub mod surface_readout;
 
-use std::collections::BTreeSet;
-
 use bevy_egui::egui;
 
 use super::own_files::OwnName;
@@ -29,27 +27,27 @@ use surface_readout::{ReadLanes, ReadSurface};
 /// The Change panel, with its search text and fields.
 #[derive(Debug, Default)]
 pub(super) struct WorldPanel {
-    sheet: Sheet,
+    /// Controls of the settings.
+    pub sheet: Sheet,
     /// Field for the name of a preset to save.
     preset_name: OwnName,
     /// Text for which settings are searched.
-    search: String,
+    pub search: String,
 }
 
 impl WorldPanel {
-    /// Draws the panel and collects the user's commands.
+    /// Draws the panel and sends the user's commands.
     pub fn ui(
         &mut self,
         ui: &mut egui::Ui,
         run: &CurrentRun,
         history: &UndoHistory,
         on_stage: &ReadLanes,
-        commands: &mut Vec<Command>,
     ) {
         self.sheet.begin(ui, run);
-        title_and(ui, "World", |ui| undo_buttons(ui, history, commands));
-        preset_choice(ui, &mut self.preset_name, run, commands);
-        next_run(ui, run, commands);
+        title_and(ui, "World", |ui| undo_buttons(ui, history));
+        preset_choice(ui, &mut self.preset_name, run);
+        next_run(ui, run);
         self.search_field(ui);
         if self.search.trim().is_empty() {
             let all = self.sheet.sections("trial.");
@@ -57,27 +55,17 @@ impl WorldPanel {
                 all.into_iter().partition(|section| FIRST.contains(section));
             self.sheet.knob(ui, |path| path == GRAVITY);
             for section in first {
-                self.folded(ui, section, run, on_stage, commands);
+                self.folded(ui, section, run, on_stage);
             }
             if self.sheet.fold(ui, ADVANCED, title_text("Advanced"), ADVANCED) {
                 for section in others {
-                    self.folded(ui, section, run, on_stage, commands);
+                    self.folded(ui, section, run, on_stage);
                 }
             }
         } else {
             self.search_results(ui);
         }
-        self.sheet.send(commands);
-    }
-
-    /// Unfolds the advanced settings of the sections with these titles.
-    pub fn unfold(&mut self, sections: &BTreeSet<String>) {
-        self.sheet.unfold(sections.iter().cloned());
-    }
-
-    /// Sets the text for which settings are searched.
-    pub fn set_search(&mut self, text: &str) {
-        text.clone_into(&mut self.search);
+        self.sheet.send(ui);
     }
 
     /// Draws the search field.
@@ -105,21 +93,20 @@ impl WorldPanel {
         section: Section,
         run: &CurrentRun,
         on_stage: &ReadLanes,
-        commands: &mut Vec<Command>,
     ) {
         ui.add_space(theme::GAP / 2.0);
         let header = egui::CollapsingHeader::new(title_text(section.title))
             .default_open(FIRST.contains(&section));
         folded(ui, header, section.about, |ui| {
             if section == Trial::GROUND {
-                ground_switch(ui, run, commands);
+                ground_switch(ui, run);
             }
             if section == Stairs::SECTION {
                 ui.horizontal_wrapped(|ui| {
-                    stairs_choice(ui, run, commands);
+                    stairs_choice(ui, run);
                     let hint = "Drag the edges of the steps, change each step in a table, and save the stairs";
                     let edit = Command::Window(WindowCommand::OpenPanel(PanelKind::Stairs));
-                    CommandButton::new("Edit…", hint, edit).show(ui, commands);
+                    CommandButton::new("Edit…", hint, edit).show(ui);
                 });
             }
             if let Some((_, surface)) = READ_OUT.iter().find(|(of, _)| *of == section) {
@@ -180,7 +167,7 @@ const READ_OUT: [(Section, ReadSurface); 3] = [
 ];
 
 /// Draws the switch that gives the ground its own surface.
-fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun) {
     let trial = &run.next_settings().trial;
     let differs = trial.ground.is_some();
     let hint = "On: the ground gets its own settings, copied from the stairs. Off: ground and stairs share one surface";
@@ -189,11 +176,11 @@ fn ground_switch(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command
         false => PlanCommand::set("ground.friction", &trial.surface.friction.to_string()),
     };
     let words = ("The ground has its own surface", hint);
-    command_box(ui, differs, words, Command::Plan(change), commands);
+    command_box(ui, differs, words, Command::Plan(change));
 }
 
 /// Draws whether the current run uses these settings, with a button that starts the next run.
-fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
+fn next_run(ui: &mut egui::Ui, run: &CurrentRun) {
     // The row is always present, so that the layout does not move when a slider is released.
     let palette = theme::of(ui);
     let (text, color) = if !run.is_under_way() {
@@ -214,7 +201,7 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun, commands: &mut Vec<Command>) {
         RunStatus::Finished => Some("The finished run used these settings: change a setting first"),
     };
     let begin = Command::Run(RunCommand::New);
-    CommandButton::new("New run in this world", hint, begin).unless(refusal).show(ui, commands);
+    CommandButton::new("New run in this world", hint, begin).unless(refusal).show(ui);
 }
 
 #[cfg(test)]

@@ -10,13 +10,8 @@ use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_lab::run::names::{PRESET_TITLES, with_title};
 
-/// Draws the selection of presets, and the button and field that save a new one. Collects the user's commands.
-pub(super) fn preset_choice(
-    ui: &mut egui::Ui,
-    name: &mut OwnName,
-    run: &CurrentRun,
-    commands: &mut Vec<Command>,
-) {
+/// Draws the selection of presets, and the button and field that save a new one. Sends the user's commands.
+pub(super) fn preset_choice(ui: &mut egui::Ui, name: &mut OwnName, run: &CurrentRun) {
     let (presets, chosen) = (&run.context.presets, run.next_plan().preset.as_str());
     ui.horizontal_wrapped(|ui| {
         ui.label("Preset");
@@ -46,11 +41,11 @@ pub(super) fn preset_choice(
                 picked = own.map(|own| own.name.as_str()).or(picked);
             });
         let picked = picked.map(|name| PlanCommand::SetPreset(name.to_owned()));
-        commands.extend(picked.map(Command::Plan));
+        Command::send_all(picked.map(Command::Plan), ui);
         let list = named(list.response, egui::WidgetType::ComboBox, "Preset");
         if list.clicked() {
             // The folder may contain new files.
-            commands.push(Command::Plan(PlanCommand::ListPresets));
+            Command::Plan(PlanCommand::ListPresets).send(ui);
         }
         list.on_hover_text("Replaces all settings of the next run");
         let hint = "Save the settings of the next run under a name, to use them again later";
@@ -58,7 +53,7 @@ pub(super) fn preset_choice(
         name.button(ui, ("Save as preset…", hint), suggestion);
     });
     if let Some(name) = name.field(ui, presets) {
-        commands.push(Command::Plan(PlanCommand::StorePreset(name)));
+        Command::Plan(PlanCommand::StorePreset(name)).send(ui);
     }
 }
 
@@ -73,9 +68,9 @@ mod tests {
     fn panel(run: &CurrentRun) -> Sent<'_> {
         let mut name = OwnName::default();
         // The height is that of the smallest usual window.
-        testing::panel([theme::PANEL_WIDTH, 720.0], move |ui, commands| {
+        testing::panel([theme::PANEL_WIDTH, 720.0], move |ui| {
             theme::apply(ui.ctx());
-            preset_choice(ui, &mut name, run, commands);
+            preset_choice(ui, &mut name, run);
         })
     }
 

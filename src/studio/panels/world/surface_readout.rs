@@ -67,15 +67,15 @@ const LINES: [ReadoutLine; 6] = [
     ReadoutLine {
         name: "Contact",
         term: "",
-        hint: "Number of limbs that touched it in the last 0.25 s",
+        hint: "Number of blocks that touched it in the last 0.25 s",
         draw: |column, ui| column.contact(ui),
         explain: |column, ui| column.explain_limbs(ui),
     },
     ReadoutLine {
         name: "Slip speed",
         term: "",
-        hint: "Speed of the contacts along the surface: mean of the last 0.25 s, in which hard-pressed limbs count most. \
-               Near 0 the limbs hold",
+        hint: "Speed of the contacts along the surface: mean of the last 0.25 s, in which hard-pressed blocks count most. \
+               Near 0 the blocks hold",
         draw: |column, ui| column.value(ui, |reading| in_m_s(reading.slip_m_s)),
         explain: |column, ui| column.explain_slip(ui),
     },
@@ -90,13 +90,13 @@ const LINES: [ReadoutLine; 6] = [
     ReadoutLine {
         name: "Sinks in",
         term: "penetration",
-        hint: "Greatest depth of a limb's lowest corner below the surface in the last 0.25 s. A hard surface stays near 0. \
-               In a soft one, a limb that stands on its end can sink in by more than a metre",
+        hint: "Greatest depth of a block's lowest corner below the surface in the last 0.25 s. A hard surface stays near 0. \
+               In a soft one, a block that stands on its end can sink in by more than a metre",
         draw: |column, ui| column.value(ui, |reading| in_mm(reading.depth_m)),
         explain: |column, ui| column.explain_limbs(ui),
     },
     ReadoutLine {
-        name: "Heat",
+        name: "Heating power",
         term: "dissipation",
         hint: "Energy per second that turns into heat here: friction force times slip speed, and what the surface's \
                damping takes. Mean of the last 0.25 s. Impacts, bounces and dents are not in it",
@@ -143,7 +143,7 @@ impl<'l> ReadLanes<'l> {
             (ReadSurface::Stairs, false) => "On stairs and ground now",
             (ReadSurface::Stairs, true) => "On the stairs now",
             (ReadSurface::Ground, _) => "On the ground now",
-            (ReadSurface::Skin, _) => "Between limbs now",
+            (ReadSurface::Skin, _) => "Between blocks now",
         };
         let header = egui::CollapsingHeader::new(weak(ui, title))
             .id_salt(("read-out", title))

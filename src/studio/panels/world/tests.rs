@@ -2,10 +2,9 @@
 
 use super::*;
 use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, every_section};
-use crate::studio::panels::testing::{Sent, set, shows, type_into};
+use crate::studio::panels::testing::{Sent, panel_at_60_hz, sent_by, set, shows, type_into};
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::undo::UndoDirection;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 /// Calls `act` on the panel. Returns the commands that were sent.
@@ -21,48 +20,12 @@ fn sent_at(
     act: impl FnOnce(&mut Sent<'_>),
 ) -> Vec<Command> {
     let mut panel = WorldPanel::default();
-    panel.unfold(&every_section());
-    let mut harness = Harness::builder()
-        .with_size(egui::vec2(width, 4000.0))
-        .with_step_dt(1.0 / 60.0)
-        .build_ui_state(
-            |ui, commands| {
-                theme::apply(ui.ctx());
-                panel.ui(ui, run, history, &ReadLanes::default(), commands);
-            },
-            Vec::new(),
-        );
-    harness.run();
-    act(&mut harness);
-    harness.run();
-    harness.state().clone()
-}
-
-#[test]
-fn a_slider_value_is_sent_when_it_is_released_or_rests() {
-    let run = prepared_run();
-    let drag = |rests_for_frames: usize, lets_go: bool| {
-        sent(&run, |harness| {
-            let slider = harness.get_by_role_and_label(egui::accesskit::Role::Slider, "Bounce");
-            let rail = slider.rect();
-            harness.drag_at(rail.left_center() + egui::vec2(6.0, 0.0));
-            harness.run();
-            harness.hover_at(rail.center());
-            harness.run_steps(1 + rests_for_frames);
-            if lets_go {
-                harness.drop_at(rail.center());
-            }
-        })
-    };
-    for commands in [drag(0, true), drag(30, false)] {
-        let [Command::Plan(PlanCommand::SetField { field, text })] = &commands[..] else {
-            panic!("one command")
-        };
-        assert_eq!(field, "trial.surface.bounce");
-        let value: f32 = text.parse().expect("a number");
-        assert!((0.3..0.7).contains(&value), "half way along the rail: {value}");
-    }
-    assert_eq!(drag(0, false), []);
+    panel.sheet.unfold(&every_section());
+    let harness = panel_at_60_hz([width, 4000.0], |ui| {
+        theme::apply(ui.ctx());
+        panel.ui(ui, run, history, &ReadLanes::default());
+    });
+    sent_by(harness, act)
 }
 
 #[test]
@@ -187,7 +150,8 @@ fn columns_align_and_fit_at_every_panel_width() {
             }
             let rect = |label: &str| harness.get_by_role_and_label(Role::Slider, label).rect();
             let one = rect("Friction");
-            for other in ["Softness (CFM), m/s per N", "Limb length, m", "Joint damping, N·m·s/rad"]
+            for other in
+                ["Softness (CFM), m/s per N", "Block length, m", "Joint damping, N·m·s/rad"]
             {
                 let other = rect(other);
                 let are_aligned = one.left() == other.left() && one.width() == other.width();

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 
 use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::scene::camera::view::{CameraView, middle_of};
+use crate::studio::scene::camera::view::{CameraView, FreeMargins, middle_of};
 
 /// Time before and after a frame over which the camera's target is averaged, in seconds of the film.
 const TARGET_S: f32 = 0.8;
@@ -22,11 +22,11 @@ pub fn camera_path(
     let middle = |points: &Vec<Vec3>| middle_of(points.iter().copied());
     let middles: Vec<Vec3> = points.iter().map(middle).collect();
     let targets = smooth(&middles, frames_in(TARGET_S));
-    let view = CameraView::of(camera_mode, lanes);
+    let (view, free) = (CameraView::of(camera_mode, lanes), FreeMargins::default());
     let needed_m: Vec<f32> = points
         .iter()
         .zip(&targets)
-        .map(|(points, target)| view.distance_to_see(*target, points.iter().copied(), aspect))
+        .map(|(points, target)| view.distance_to_see(*target, points.iter().copied(), aspect, free))
         .collect();
     // The maximum over neighbouring frames ensures that the averaged distance still shows all points.
     let reach = frames_in(DISTANCE_S);
@@ -100,7 +100,8 @@ mod tests {
             let single = camera_path(&points[7..8], camera_mode, 1, (aspect, 30));
             let target = middle_of(points[7].iter().copied());
             let mut view = CameraView::of(camera_mode, 1);
-            view.distance_m = view.distance_to_see(target, points[7].iter().copied(), aspect);
+            let free = FreeMargins::default();
+            view.distance_m = view.distance_to_see(target, points[7].iter().copied(), aspect, free);
             assert_eq!(single, [view.looking_at(target)]);
         }
     }

@@ -15,8 +15,8 @@ use std::path::Path;
 use crate::studio::stage::evenly;
 use snakes_core::check::{Invalid, within};
 use snakes_lab::export::film::{
-    BegunGif, ESTIMATED_BYTES, FilmFile, FrameFolder, GifChoice, GifChoices, GifFile, GifPalette,
-    PAIRS, Video, check_video_size,
+    BegunGif, FilmFile, FrameFolder, GifChoice, GifChoices, GifFile, GifPalette, PAIRS, Video,
+    check_video_size, most_estimated,
 };
 use snakes_lab::export::{ExportFormat, ExportProgress};
 
@@ -82,7 +82,7 @@ fn gif(order: &FilmOrder, path: &Path, progress: &ExportProgress) -> Result<(), 
     let duration_s = checked_plan(order)?.len() as f64 / f64::from(order.fps);
     let ordered = GifChoice { size: order.size, fps: order.fps };
     let allowed = (order.may_be_smaller, order.may_be_slower);
-    let mut choices = GifChoices::new(ordered, duration_s, allowed);
+    let mut choices = GifChoices::new(ordered, (duration_s, order.most_bytes), allowed);
     while let Some((chosen, most)) = choices.take() {
         let order = FilmOrder { size: chosen.size, fps: chosen.fps, ..order.clone() };
         match gif_within(most, &order, path, progress) {
@@ -113,7 +113,7 @@ fn gif_within(
         })?;
         let palette = GifPalette::of(&samples);
         let expected = palette.expected_bytes(&samples, all);
-        if most.is_some() && expected > ESTIMATED_BYTES {
+        if most.is_some_and(|most| expected > most_estimated(most)) {
             return Err(FilmError::TooLarge(expected));
         }
         progress.expect(expected);

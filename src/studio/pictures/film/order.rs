@@ -1,8 +1,6 @@
 //! The content and style of a film.
 
-use crate::studio::commands::camera_mode::CameraMode;
-use crate::studio::commands::overlay::Overlay;
-use crate::studio::ui::theme::Theme;
+use crate::studio::state::shares::StageLook;
 use snakes_core::save::LoadedChampion;
 
 /// The content and style of a film.
@@ -20,18 +18,16 @@ pub struct FilmOrder {
     pub fps: u32,
     /// Width and height, in pixels.
     pub size: (u32, u32),
+    /// Maximum size of the file of a GIF that may be smaller or slower, in bytes.
+    pub most_bytes: u64,
     /// Whether a GIF may have fewer pixels, so that its file is small.
     pub may_be_smaller: bool,
     /// Whether a GIF may have fewer frames per second, so that its file is small.
     pub may_be_slower: bool,
     /// Whether each part ends shortly after the last snake has landed or was furthest, instead of at `end_s`.
     pub ends_with_climb: bool,
-    /// Camera mode: follow, side or top.
-    pub camera: CameraMode,
-    /// Theme of the scene.
-    pub theme: Theme,
-    /// Overlays that are drawn over the scene.
-    pub overlays: Vec<Overlay>,
+    /// Camera mode, theme and overlays.
+    pub look: StageLook,
     /// Whether names, results and the time are written onto the frames.
     pub has_captions: bool,
 }

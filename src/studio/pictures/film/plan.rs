@@ -73,7 +73,7 @@ fn frames_of(
     });
     let points: Vec<Vec<Vec3>> = points.collect();
     let aspect = order.size.0 as f32 / order.size.1.max(1) as f32;
-    let cameras = camera_path(&points, order.camera, lanes.len(), (aspect, order.fps));
+    let cameras = camera_path(&points, order.look.camera, lanes.len(), (aspect, order.fps));
     let frames = times_s.into_iter().zip(cameras).enumerate();
     let planned = frames.map(|(frame, (time_s, camera))| {
         let shown_s = frame as f64 / fps;

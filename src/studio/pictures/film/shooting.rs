@@ -46,8 +46,8 @@ pub fn shoot(
     work: impl FnOnce(&mut Shooting<'_>) -> Result<(), FilmError>,
 ) -> Result<(), FilmError> {
     let mut done = Ok(());
-    Offscreen::draw(order.size, order.theme, |studio| {
-        studio.show_overlays(&order.overlays);
+    Offscreen::draw(order.size, order.look.theme, |studio| {
+        studio.show_overlays(&order.look.overlays);
         done = work(&mut Shooting { order, plan, studio, part: None, time_s: 0.0 });
         Ok(())
     })?;
@@ -116,8 +116,8 @@ impl Shooting<'_> {
     fn texts(&mut self) -> (Option<FilmBand>, Vec<(Vec3, String)>) {
         let world = self.studio.app.world_mut();
         let mut lanes = world.query::<&Lane>();
-        let mut lanes: Vec<&Lane> = lanes.iter(world).collect();
-        lanes.sort_by_key(|lane| lane.number);
+        let lanes = lanes.iter(world).sort_by_key::<&Lane, _>(|lane| lane.number);
+        let lanes: Vec<&Lane> = lanes.collect();
         let heads = over_heads(&lanes);
         (band(&lanes, self.time_s), heads)
     }
@@ -159,6 +159,7 @@ mod tests {
     use crate::studio::commands::overlay::Overlay;
     use crate::studio::pictures::film::order::FilmPart;
     use crate::studio::pictures::film::plan::planned;
+    use crate::studio::state::shares::StageLook;
     use crate::studio::ui::theme::Theme;
     use snakes_core::save::{load_champion, shipped_champion};
 
@@ -218,12 +219,15 @@ mod tests {
             speed: 1.0,
             fps: 10,
             size: (160, 90),
+            most_bytes: 8_000_000,
             may_be_smaller: false,
             may_be_slower: false,
             ends_with_climb: false,
-            camera: CameraMode::Follow,
-            theme: Theme::Light,
-            overlays: vec![Overlay::Trail, Overlay::Contacts, Overlay::Torques],
+            look: StageLook {
+                camera: CameraMode::Follow,
+                theme: Theme::Light,
+                overlays: vec![Overlay::Trail, Overlay::Contacts, Overlay::Torques],
+            },
             has_captions: true,
         };
         let plan = planned(&order).expect("planned");

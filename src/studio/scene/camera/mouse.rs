@@ -31,18 +31,13 @@ struct MousePresses {
 /// Maximum movement of the pointer between press and release of a click, in pixels.
 const CLICK_PIXELS: f32 = 5.0;
 /// Maximum time between the two presses of a double click, in seconds, on the stage and in panels.
-pub(crate) const DOUBLE_CLICK_S: f32 = 0.4;
+pub(crate) const DOUBLE_CLICK_S: f32 = 0.5;
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Selection>()
         .init_resource::<MousePresses>()
         .add_systems(Update, (press, drag, release).chain().in_set(FrameSet::Apply))
         .add_systems(Update, clear_selection.in_set(FrameSet::Draw));
-}
-
-/// Returns the ray through the pointer, in the scene.
-fn ray_at(cursor: Vec2, (camera, place): (&Camera, &GlobalTransform)) -> Option<Ray3d> {
-    camera.viewport_to_world(place, cursor).ok()
 }
 
 /// Selects and holds the limb that is pressed. A double click turns the camera to the surface under the pointer.
@@ -67,7 +62,7 @@ fn press(
     else {
         return;
     };
-    let Some(ray) = ray_at(cursor, *camera) else { return };
+    let Ok(ray) = camera.0.viewport_to_world(camera.1, cursor) else { return };
     let hits = worlds.iter_mut().filter_map(|mut world| world.cast_ray(ray));
     // Among ghosts at the same place, the last one is hit.
     let hit = hits.max_by(|a, b| b.distance_m.total_cmp(&a.distance_m));
@@ -113,7 +108,7 @@ fn drag(
             .info("A recording cannot be pulled; \"Simulate again\" makes it a simulation.".into());
     }
     held.is_pulling = true;
-    let Some(ray) = ray_at(cursor, *camera) else { return };
+    let Ok(ray) = camera.0.viewport_to_world(camera.1, cursor) else { return };
     let point: Vec3 = lane.point_of(held.pull.part, held.pull.held_at_m) + lane.offset();
     let facing = InfinitePlane3d::new(camera.1.back());
     if let Some(distance_m) = ray.intersect_plane(point, facing) {
@@ -159,10 +154,11 @@ fn clear_selection(
         selection.lane = added.iter().map(|lane| lane.number).max().unwrap_or_default();
         return;
     }
-    selection.reset();
+    (selection.lane, selection.limb) = (0, None);
     if *mode == StageMode::Race {
         let racers = added.iter().filter(|lane| !lane.is_ghost);
-        selection.lane = leader(racers.map(|lane| (lane.number, lane.staged.fitness())));
+        let fitness = |lane: &Lane| lane.staged.champion().evaluation.fitness;
+        selection.lane = leader(racers.map(|lane| (lane.number, fitness(lane))));
     }
 }
 

@@ -18,8 +18,6 @@ pub(crate) struct CameraRig {
     pub(super) view: CameraView,
     /// Current view of the camera, which approaches the target view.
     pub(super) shown: CameraView,
-    /// Whether the camera follows one snake or all snakes.
-    pub(super) follows: bool,
     /// Lane that the camera follows; `None` for all lanes.
     pub(super) lane: Option<usize>,
     /// Smoothed position of the followed snakes, in metres; `None` before the first frame.
@@ -34,7 +32,6 @@ impl Default for CameraRig {
             camera_mode: CameraMode::Follow,
             view,
             shown: view,
-            follows: true,
             lane: None,
             anchor: None,
             lanes: 1,
@@ -51,8 +48,7 @@ impl CameraRig {
     /// Switches to a camera mode.
     pub fn take(&mut self, camera_mode: CameraMode) {
         self.camera_mode = camera_mode;
-        self.follows = camera_mode != CameraMode::Free;
-        if self.follows {
+        if self.follows() {
             // Wrap the current yaw, so that the camera turns the short way.
             let turn = std::f32::consts::TAU;
             self.shown.yaw_rad -= libm::roundf(self.shown.yaw_rad / turn) * turn;
@@ -93,17 +89,22 @@ impl CameraRig {
         self.lane = lane;
         if lane.is_some() {
             self.view.offset = Vec3::ZERO;
-            (self.camera_mode, self.follows) = (CameraMode::Follow, true);
+            self.camera_mode = CameraMode::Follow;
         } else {
-            (self.camera_mode, self.follows) = (CameraMode::Free, false);
+            self.camera_mode = CameraMode::Free;
             // The offset starts at the current target, so that the camera glides to the point.
             self.view.offset = point - self.anchor.unwrap_or_default();
         }
     }
 
+    /// Returns whether the camera follows one snake or all snakes.
+    pub(super) fn follows(&self) -> bool {
+        self.camera_mode != CameraMode::Free
+    }
+
     /// Returns whether the camera keeps several lanes in view.
     pub(super) fn frames_all(&self) -> bool {
-        self.follows && self.lane.is_none() && self.lanes > 1
+        self.follows() && self.lane.is_none() && self.lanes > 1
     }
 
     /// Returns the current transform of the camera.
@@ -125,7 +126,7 @@ mod tests {
             rig.view.pitch_rad += pitch_rad;
             rig.view.distance_m /= 2.0;
             rig.turned_by_hand();
-            (rig.camera_mode(), rig.follows)
+            (rig.camera_mode(), rig.follows())
         };
         assert_eq!(turned(CameraMode::Side, 0.0, 0.0), (CameraMode::Side, true), "only nearer");
         assert_eq!(turned(CameraMode::Side, 0.3, 0.0), (CameraMode::Follow, true));

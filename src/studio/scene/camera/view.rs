@@ -167,7 +167,7 @@ impl CameraView {
         let zoom = self.distance_m / Self::DEFAULT_M;
         let target = target + self.offset;
         let points = points.iter().copied();
-        let distance_m = self.distance_beside(target, points, aspect, free) * zoom;
+        let distance_m = self.distance_to_see(target, points, aspect, free) * zoom;
         let half_height_m = distance_m * libm::tanf(VERTICAL_VIEW_RAD / 2.0);
         // The offset puts the target into the middle between the margins.
         let aside = Vec3::Y * (aspect * (free.left - free.right)) + Vec3::Z * free.bottom;
@@ -185,18 +185,9 @@ impl CameraView {
         Vec2::new(0.5 + at.y / half_width_m / 2.0, 0.5 - at.z / half_height_m / 2.0)
     }
 
-    /// Returns the distance from `target` at which all points are in view, in metres. `aspect` is width over height.
+    /// Returns the distance from `target` at which all points are in view beside the free margins, in metres. The target is in
+    /// the middle between the margins. `aspect` is width over height.
     pub fn distance_to_see(
-        &self,
-        target: Vec3,
-        points: impl IntoIterator<Item = Vec3>,
-        aspect: f32,
-    ) -> f32 {
-        self.distance_beside(target, points, aspect, FreeMargins::default())
-    }
-
-    /// As [`Self::distance_to_see`], but leaves margins free. The target is in the middle between them.
-    fn distance_beside(
         &self,
         target: Vec3,
         points: impl IntoIterator<Item = Vec3>,
@@ -228,7 +219,7 @@ impl CameraView {
 
 /// Margins of the picture without any points, as fractions of its width or height.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct FreeMargins {
+pub(crate) struct FreeMargins {
     left: f32,
     right: f32,
     bottom: f32,
@@ -267,7 +258,8 @@ mod tests {
             for aspect in [0.7, 1.6] {
                 let mut view = CameraView::of(camera_mode, 6);
                 let target = Vec3::new(0.0, 7.0, 2.0);
-                view.distance_m = view.distance_to_see(target, points, aspect);
+                view.distance_m =
+                    view.distance_to_see(target, points, aspect, FreeMargins::default());
                 let into_eye = view.looking_at(target).to_matrix().inverse();
                 let half = libm::tanf(VERTICAL_VIEW_RAD / 2.0);
                 let places = points.map(|point| {

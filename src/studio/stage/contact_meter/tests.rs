@@ -114,28 +114,18 @@ const SURFACES: [Option<&str>; 6] =
     [None, Some("ice"), Some("rubber"), Some("moon"), Some("mud"), Some("trampoline")];
 
 #[test]
-fn on_no_surface_is_the_energy_lost_in_contacts_and_stops_negative() {
-    for preset in SURFACES {
-        let mut lane = lane(preset);
-        for moment in 1..=140 {
-            lane.show(f64::from(moment) / 10.0, None, 3000).expect("healthy");
-            let lost = lane.readings.energy_lost.expect("undisturbed");
-            let case = format!("{preset:?} after {moment} tenths of a second: {lost:?}");
-            assert!(lost.elsewhere_j() > -10.0, "{case}");
-            // The lost energy rises steadily: at 5 kW, the torques lose some hundred watts in impacts and stops.
-            let least_j = if moment >= 5 { 0.1 * lost.total_j } else { -10.0 };
-            assert!(lost.elsewhere_j() > least_j, "{case}");
-        }
-    }
-}
-
-#[test]
-fn where_limbs_slip_friction_takes_energy_and_does_not_give_it() {
+fn on_every_surface_contacts_and_stops_lose_energy_and_slipping_limbs_give_none() {
     for preset in SURFACES {
         let mut lane = lane(preset);
         let (mut given_w, mut taken_w) = (0.0, 0.0);
         for step in 1..=840 {
             lane.show(f64::from(step) / 60.0, None, 3000).expect("healthy");
+            if step % 6 == 0 {
+                let lost = lane.readings.energy_lost.expect("undisturbed");
+                // The lost energy rises steadily: at 5 kW, the torques lose some hundred watts in impacts and stops.
+                let least_j = if step >= 30 { (0.1 * lost.total_j).max(-10.0) } else { -10.0 };
+                assert!(lost.elsewhere_j() > least_j, "{preset:?} after step {step}: {lost:?}");
+            }
             for patch in lane.replay.simulation().expect("simulated").contact_patches() {
                 given_w -= patch.friction_w.min(0.0);
                 taken_w += patch.friction_w.max(0.0);

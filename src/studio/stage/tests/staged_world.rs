@@ -36,10 +36,11 @@ fn a_context_holds_what_the_engine_sees_at_the_place_of_its_lane() {
         )>();
         for (lane, context, bodies, colliders, joints) in held.iter(world) {
             let simulation = lane.replay.simulation().expect("simulated");
-            let physics = simulation.physics();
+            let world = simulation.in_rapier();
+            let physics = world.physics();
             let on_stage =
                 |pose: &Pose| Pose { translation: pose.translation + lane.offset(), ..*pose };
-            for (&part, pose) in simulation.parts().iter().zip(lane.replay.poses()) {
+            for (&part, pose) in world.bodies().iter().zip(lane.replay.poses()) {
                 let body = &bodies.bodies[part];
                 let collider = &colliders.colliders[body.colliders()[0]];
                 assert_eq!([body.position(), collider.position()], [&on_stage(pose); 2]);

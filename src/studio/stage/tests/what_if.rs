@@ -1,15 +1,12 @@
 //! Copies with a changed world that begin in the middle of the original's replay.
 
 use super::*;
+use crate::studio::state::current_run::climber;
 use snakes_core::evolve::{Settings, with_field};
 use snakes_core::score::Trial;
 
 /// Physics step at which the world of the copies changes.
 const MOMENT: u32 = 312;
-
-fn original() -> StagedChampion {
-    StagedChampion::from_file(&shipped(), 0, "climber")
-}
 
 /// Returns the trial of a champion with another value of a setting.
 fn changed(loaded: &LoadedChampion, field: &str, text: &str) -> Trial {
@@ -26,47 +23,57 @@ fn original_at(step: u32) -> Rollout {
 fn copy(friction: &str) -> StagedChampion {
     let trial = changed(&shipped(), "surface.friction", friction);
     let label = format!("friction {friction}");
-    original().in_world_from(Some(&original_at(MOMENT)), &trial, label)
+    climber(0).in_world_from(Some(&original_at(MOMENT)), &trial, label)
 }
 
 /// Returns a what-if of the original and copies with these frictions, of which the latest is not kept.
 fn what_if(frictions: &[&str]) -> Show {
     let plan = RunPlan::new("climb", 1, Settings::default());
-    let mut champions = vec![original()];
+    let mut champions = vec![climber(0)];
     champions.extend(frictions.iter().map(|friction| copy(friction)));
     let beside = vec![plan.clone(); frictions.len() - 1];
     let mode = StageMode::WhatIf { before: Box::new(plan), beside, current: frictions.len() };
     Show { champions, mode }
 }
 
-fn step_s() -> f64 {
-    1.0 / f64::from(shipped().champion.trial.physics.steps_per_s)
+/// Returns the time of a step of the original, in seconds.
+fn time_of(step: u32) -> f64 {
+    let step_s = 1.0 / f64::from(shipped().champion.trial.physics.steps_per_s);
+    f64::from(step) * step_s
 }
 
-/// Shows champions, and plays from [`MOMENT`] on.
-fn present(app: &mut App, show: Show) {
+/// Shows champions, and plays from this time on, in seconds.
+fn present_at(app: &mut App, show: Show, moment_s: f64) {
     app.world_mut().write_message(show);
-    let moment_s = f64::from(MOMENT) * step_s();
     clock(app).play_change(moment_s, moment_s);
     frame(app, 0.0);
 }
 
-/// Creates a stage that has played the original to [`MOMENT`].
-fn stage_at_moment() -> App {
-    let mut app = stage_of(vec![shipped()]);
+/// Shows champions, and plays from [`MOMENT`] on.
+fn present(app: &mut App, show: Show) {
+    present_at(app, show, time_of(MOMENT));
+}
+
+/// Creates a stage that has played a champion to this time, in seconds.
+fn stage_at(loaded: LoadedChampion, moment_s: f64) -> App {
+    let mut app = stage_of(vec![loaded]);
     finish_lookahead(&mut app);
-    clock(&mut app).hold_at(f64::from(MOMENT) * step_s());
+    clock(&mut app).hold_at(moment_s);
     frame(&mut app, 0.0);
     app
+}
+
+/// Creates a stage that has played the original to [`MOMENT`].
+fn stage_at_moment() -> App {
+    stage_at(shipped(), time_of(MOMENT))
 }
 
 #[test]
 fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on() {
     let mut app = stage_at_moment();
     present(&mut app, what_if(&["0.3"]));
-    let moment_s = f64::from(MOMENT) * step_s();
     assert!(clock(&mut app).is_playing);
-    assert_eq!(clock(&mut app).time_s(), moment_s);
+    assert_eq!(clock(&mut app).time_s(), time_of(MOMENT));
     let [(_, first), (_, second)] = lanes_of(&mut app)[..] else { panic!("two lanes") };
     assert_eq!((first.replay.step(), second.replay.step()), (MOMENT, MOMENT));
     assert_eq!(first.replay.poses(), original_at(MOMENT).poses());
@@ -81,9 +88,9 @@ fn a_copy_starts_at_the_moment_with_the_state_of_the_original_while_it_plays_on(
 #[test]
 fn a_copy_in_the_other_engine_goes_on_with_the_same_motion() {
     let trial = changed(&shipped(), "physics.engine", "lanes");
-    let copy = original().in_world_from(Some(&original_at(MOMENT)), &trial, "lanes".to_owned());
+    let copy = climber(0).in_world_from(Some(&original_at(MOMENT)), &trial, "lanes".to_owned());
     assert!(copy.is_changed());
-    let (mut in_rapier, mut in_lanes) = (original().rollout(), copy.rollout());
+    let (mut in_rapier, mut in_lanes) = (climber(0).rollout(), copy.rollout());
     let middle = |rollout: &Rollout| rollout.poses()[2].translation;
     let mut moved_m = 0.0;
     while in_rapier.step() < MOMENT + 6 {
@@ -114,7 +121,7 @@ fn seeking_in_a_copy_shows_the_past_of_the_original_and_always_the_same_bits() {
             finish_lookahead(&mut app);
         }
         for step in steps {
-            clock(&mut app).hold_at(f64::from(step) * step_s());
+            clock(&mut app).hold_at(time_of(step));
             frame(&mut app, 0.0);
             let lanes = lanes_of(&mut app);
             let shown = lanes[1].1;
@@ -170,11 +177,8 @@ fn a_copy_starts_at_the_moment_without_simulating_its_past() {
     // The trial takes ten minutes and the change is near its end: simulating the steps before would take hundreds of frames.
     let mut long = shipped();
     long.champion.trial.duration_s = 600.0;
-    let mut app = stage_of(vec![long.clone()]);
-    finish_lookahead(&mut app);
     let moment_s = 590.0;
-    clock(&mut app).hold_at(moment_s);
-    frame(&mut app, 0.0);
+    let mut app = stage_at(long.clone(), moment_s);
     let original = StagedChampion::from_file(&long, 0, "a champion");
     let step = lane(&mut app).replay.step();
     let moment = lane(&mut app).rollout_at(step);
@@ -185,9 +189,7 @@ fn a_copy_starts_at_the_moment_without_simulating_its_past() {
         Show { champions: vec![original.clone(), copy], mode }
     });
     for show in copies {
-        app.world_mut().write_message(show);
-        clock(&mut app).play_change(moment_s, moment_s);
-        frame(&mut app, 0.0);
+        present_at(&mut app, show, moment_s);
         let lanes = lanes_of(&mut app);
         let steps: Vec<u32> = lanes.iter().map(|(_, lane)| lane.replay.step()).collect();
         assert_eq!(steps, [step; 2], "both are there within one frame");

@@ -87,7 +87,7 @@ impl ComparedRuns {
         }
         let path = folder.to_owned();
         let reading = BackgroundTask::start(move || {
-            let (plan, records) = load_log(&path).map_err(|error| error.to_string())?;
+            let (plan, records) = load_log(&path)?;
             Ok(Other { settings: settings_in_words(&plan), plan, records })
         });
         let reading = reading.map_err(|error| format!("The run cannot be read: {error}"))?;
@@ -98,14 +98,13 @@ impl ComparedRuns {
 
     /// Receives the results of the background tasks: the list of runs, and the runs to compare.
     pub fn take_in(&mut self) {
-        if let Some(runs) = self.listing.as_ref().and_then(BackgroundTask::poll) {
-            (self.runs, self.listing) = (Some(runs.unwrap_or_default()), None);
+        if let Some(runs) = BackgroundTask::take_result(&mut self.listing) {
+            self.runs = Some(runs.unwrap_or_default());
             self.version += 1;
         }
         for run in &mut self.compared {
-            if let Some(read) = run.reading.as_ref().and_then(BackgroundTask::poll) {
+            if let Some(read) = BackgroundTask::take_result(&mut run.reading) {
                 run.read = Some(read.flatten());
-                run.reading = None;
                 self.version += 1;
             }
         }

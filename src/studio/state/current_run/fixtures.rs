@@ -46,6 +46,12 @@ pub fn bodies_run() -> CurrentRun {
     evolved_run(StrategyKind::BodyMapElites, ControllerKind::Gait, vary)
 }
 
+/// Evolves the next generation of an experiment.
+pub fn next_generation(experiment: &mut Experiment) -> GenerationReport {
+    let pool = LocalPool::new(1).expect("threads");
+    experiment.run_generation(&pool, &RunControl::default()).expect("not cancelled")
+}
+
 /// Creates a run with two finished generations of 20 snakes for 1 s.
 fn evolved_run(
     strategy: StrategyKind,
@@ -60,11 +66,9 @@ fn evolved_run(
     settings.trial.duration_s = 1.0;
     let plan = RunPlan::new("test", 2, settings);
     let mut experiment = Experiment::new(plan.clone());
-    let pool = LocalPool::new(1).expect("threads");
     let mut run = run_of(plan);
     for _ in 0..2 {
-        let report = experiment.run_generation(&pool, &RunControl::default());
-        let report = report.expect("not cancelled");
+        let report = next_generation(&mut experiment);
         run.explore(Box::new(Exploration::of(&experiment)));
         run.note_milestone(&report);
         run.reports.push(report);
@@ -87,10 +91,8 @@ pub fn landed_run() -> CurrentRun {
 /// Evolves a run for this number of generations, and saves them in its folder.
 pub fn evolve(run: RunSource, generations: u32) {
     let mut run = run.open("a test").expect("opened");
-    let pool = LocalPool::new(1).expect("threads");
     for _ in 0..generations {
-        let report = run.experiment.run_generation(&pool, &RunControl::default());
-        let report = report.expect("not cancelled");
+        let report = next_generation(&mut run.experiment);
         run.recorder.record_generation(&run.experiment, &report).expect("kept");
     }
 }
@@ -174,10 +176,11 @@ fn elites_and_front_members_are_evaluated_as_they_were_found() {
     let run = explored_run();
     let exploration = run.exploration().expect("explored");
     for member in exploration.front.members() {
-        let champion = run.front_member(member.generation, member.individual).expect("there");
+        let place = IndividualId { generation: member.generation, individual: member.individual };
+        let champion = run.front_member(place).expect("there");
         assert_eq!(evaluate(&champion.genome, &champion.trial), member.evaluation);
     }
-    assert_eq!(run.front_member(9, 9), None);
+    assert_eq!(run.front_member(IndividualId { generation: 9, individual: 9 }), None);
     assert_eq!(run.elite(u32::MAX), None);
 }
 

@@ -17,12 +17,12 @@ impl CurrentRun {
     }
 
     /// Returns the member of the Pareto front of distance and energy at this place.
-    pub fn front_member(&self, generation: u32, individual: u32) -> Option<Champion> {
+    pub fn front_member(&self, place: IndividualId) -> Option<Champion> {
         let mut members = self.exploration()?.front.members();
+        let IndividualId { generation, individual } = place;
         let member =
             members.find(|is| (is.generation, is.individual) == (generation, individual))?;
         let (genome, trial) = (member.genome.clone(), self.trial_in(generation));
-        let place = IndividualId { generation, individual };
         self.found(place, genome, trial, Some(member.evaluation))
     }
 

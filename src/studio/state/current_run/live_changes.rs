@@ -47,7 +47,7 @@ impl CurrentRun {
         value: SettingValue,
     ) -> Result<(), String> {
         self.run_allows(field).map_err(str::to_owned)?;
-        with_value(&self.requested_settings(), field, &value).map_err(|error| error.to_string())?;
+        with_value(&self.requested_settings(), field, &value)?;
         let change = (field.to_owned(), value);
         if let Some(background) = &self.background {
             background.request_changes([change.clone()]);
@@ -76,8 +76,7 @@ impl CurrentRun {
         let [now, more] =
             [self.settings(), &self.source.plan.settings].map(|of| of.evolution.generations);
         let change = (GENERATIONS.to_owned(), SettingValue::Whole(now + more));
-        let longer = with_value(self.settings(), GENERATIONS, &change.1);
-        let longer = longer.map_err(|error| error.to_string())?;
+        let longer = with_value(self.settings(), GENERATIONS, &change.1)?;
         if !self.next_run_differs() {
             self.plan_next.settings = longer;
         }
@@ -127,7 +126,7 @@ impl CurrentRun {
     /// Sets the number of evaluation threads, from the next generation on and for later runs. Results do not depend on
     /// this number.
     pub fn set_threads(&mut self, threads: usize) -> Result<(), String> {
-        within("threads", threads, THREADS_RANGE).map_err(|error| error.to_string())?;
+        within("threads", threads, THREADS_RANGE)?;
         let evaluator = self.context.evaluator.with_workers(threads);
         self.context.evaluator = evaluator.map_err(|error| error.to_string())?;
         if let Some(background) = &self.background {

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::CurrentRun;
 use crate::studio::stage::staged_champion::StagedChampion;
-use snakes_core::check::Invalid;
 use snakes_core::evolve::{RunPlan, Settings, changed_values, with_fields};
 use snakes_core::save::{KnownFiles, NamedStairs, Preset, load_preset};
 
@@ -45,9 +44,8 @@ impl CurrentRun {
     /// next generation on, to a run in progress if they may change.
     pub fn set_fields(&mut self, changes: &[(&str, &str)]) -> Result<(), String> {
         let next = &self.plan_next;
-        let settings = with_fields(&next.settings, changes.iter().copied())
-            .and_then(|settings| settings.check_start().map(|()| settings))
-            .map_err(|error: Invalid| error.to_string())?;
+        let settings = with_fields(&next.settings, changes.iter().copied())?;
+        settings.check_start()?;
         self.set_next_plan(RunPlan { settings, ..next.clone() })
     }
 
@@ -101,7 +99,7 @@ impl CurrentRun {
         let about = format!("Your own stairs, made in the world of {}.", self.next_plan().preset);
         let stairs = self.next_settings().trial.stairs.clone();
         let named = NamedStairs { name: name.to_owned(), about, stairs };
-        self.context.saves.store_own(&named).map_err(|error| error.to_string())?;
+        self.context.saves.store_own(&named)?;
         self.list_stairs();
         Ok(())
     }
@@ -139,7 +137,7 @@ impl CurrentRun {
         let next = &self.plan_next;
         let about = format!("Your own preset, based on {}.", next.preset);
         let preset = Preset { name: name.to_owned(), about, settings: next.settings.clone() };
-        self.context.saves.store_own(&preset).map_err(|error| error.to_string())?;
+        self.context.saves.store_own(&preset)?;
         self.list_presets();
         self.plan_next.preset = preset.name;
         self.take_over_if_ready();
@@ -150,7 +148,7 @@ impl CurrentRun {
     fn preset_named(&self, name: &str) -> Result<Preset, String> {
         match self.context.presets.find(name)? {
             Some(preset) => Ok(preset.clone()),
-            None => load_preset(name).map_err(|error| error.to_string()),
+            None => Ok(load_preset(name)?),
         }
     }
 

@@ -77,7 +77,7 @@ fn copy(clipboard: &mut Option<Clipboard>, copied: &Copied) -> Result<(), String
 
 /// Reads the picture in a file, and adds an opaque alpha channel.
 fn rgba(path: &Path) -> Result<ImageData<'static>, String> {
-    let Picture { width, height, rgb } = load_picture(path).map_err(|error| error.to_string())?;
+    let Picture { width, height, rgb } = load_picture(path)?;
     let opaque = |&[red, green, blue]: &[u8; 3]| [red, green, blue, u8::MAX];
     let bytes: Vec<u8> = rgb.as_chunks::<3>().0.iter().flat_map(opaque).collect();
     Ok(ImageData { width: width as usize, height: height as usize, bytes: Cow::Owned(bytes) })

@@ -39,7 +39,7 @@ pub fn ask(question: &FileQuestion) -> io::Result<BackgroundTask<DialogAnswer>> 
             let files = dialog.pick_files();
             Box::pin(async { files.await.unwrap_or_default() })
         }
-        FileQuestion::Share(format, name) => {
+        FileQuestion::Share(format, name, _) => {
             let info = format.info();
             let named = dialog
                 .set_title(format!("{} of {name}", info.title))

@@ -111,18 +111,15 @@ fn each_question_becomes_a_command_to_the_library() {
 }
 
 #[test]
-fn a_folder_that_does_not_exist_is_reported() {
-    let mut tried = Tried::new();
-    tried.apply(&FileCommand::OpenFolder("/nowhere/at/all".into())).expect("begun");
-    let report = tried.report();
-    assert!(report.starts_with("/nowhere/at/all: cannot be opened"), "{report}");
-}
-
-#[test]
-fn a_picture_that_cannot_be_read_is_not_copied() {
-    let mut tried = Tried::new();
-    let gone = tried.champion.with_file_name("gone.png");
-    tried.apply(&FileCommand::CopyPicture(gone)).expect("begun");
-    let report = tried.report();
-    assert!(report.starts_with("The picture could not be copied: "), "{report}");
+fn a_folder_or_a_picture_that_does_not_exist_is_reported() {
+    let gone = PathBuf::from("/nowhere/at/all");
+    for (command, problem) in [
+        (FileCommand::OpenFolder(gone.clone()), "/nowhere/at/all: cannot be opened"),
+        (FileCommand::CopyPicture(gone), "The picture could not be copied: "),
+    ] {
+        let mut tried = Tried::new();
+        tried.apply(&command).expect("begun");
+        let report = tried.report();
+        assert!(report.starts_with(problem), "{report}");
+    }
 }

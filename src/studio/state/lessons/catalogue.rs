@@ -13,14 +13,14 @@ use snakes_core::save::library::{SavePlace, load_entry};
 use snakes_core::save::load_preset;
 use snakes_core::score::evaluate;
 
-use super::lesson::{Lesson, Side};
+use super::lesson::{CommonPlan, Lesson, Side};
 
 /// All lessons in the order of their numbers: first those that need no knowledge, last those about programming. Only findings and
 /// conclusions may state a result, because the other texts are shown before the experiments.
 pub(crate) const LESSONS: [Lesson; 9] = [
     report::FRICTION,
     report::MUTATIONS,
-    senses::LEARNED_BY_HEART,
+    senses::ONE_MOTION,
     senses::BLINDFOLD,
     ladder::LADDER,
     report::JOINT_LIMITS,
@@ -33,6 +33,7 @@ pub(crate) const LESSONS: [Lesson; 9] = [
 pub(crate) fn present_title(stored: String) -> String {
     match stored.as_str() {
         "Why bodies need protection" => bodies::PROTECTION.title.to_owned(),
+        "Learned by heart" => senses::ONE_MOTION.title.to_owned(),
         _ => stored,
     }
 }
@@ -43,7 +44,7 @@ pub(super) fn champions(
     lanes: &[Side],
 ) -> Result<Vec<StagedChampion>, String> {
     let place = SavePlace::Shipped(champion);
-    let (loaded, _) = load_entry(&place).map_err(|error| error.to_string())?;
+    let (loaded, _) = load_entry(&place)?;
     let original = StagedChampion::from_lesson(&loaded.champion).named("original".to_owned());
     lanes
         .iter()
@@ -53,12 +54,11 @@ pub(super) fn champions(
                     .map(|staged| staged.named((*name).to_owned()));
             }
             let settings = Settings { trial: original.trial().clone(), ..Settings::default() };
-            let settings = with_fields(&settings, changes.iter().copied())
-                .map_err(|error| error.to_string())?;
+            let settings = with_fields(&settings, changes.iter().copied())?;
             let same = original.clone().named("The same snake".to_owned());
             let changed = same.in_world(&settings.trial, (*name).to_owned());
             let staged = if changed.is_changed() { changed } else { original.clone() };
-            staged.check().map_err(|error| error.to_string())?;
+            staged.check()?;
             Ok(staged)
         })
         .collect()
@@ -70,8 +70,7 @@ fn with_changed_body(
     change: BodyChange,
     block: usize,
 ) -> Result<StagedChampion, String> {
-    let own = champion.trial.with_own_blocks(&champion.genome);
-    let own = own.map_err(|error| error.to_string())?;
+    let own = champion.trial.with_own_blocks(&champion.genome)?;
     let genome = changed_body(&own, change, block)
         .ok_or_else(|| format!("{} is not possible at block {block}.", change.name()))?;
     let evaluation = evaluate(&genome, &champion.trial);
@@ -79,9 +78,9 @@ fn with_changed_body(
 }
 
 /// Returns the plan and the thread count of a run: a preset with changes.
-pub(super) fn plan(preset: &str, side: &Side) -> Result<(RunPlan, usize), String> {
-    let preset = load_preset(preset).map_err(|error| error.to_string())?;
-    let settings = with_fields(&preset.settings, side.changes.iter().copied())
-        .map_err(|error| error.to_string())?;
-    Ok((RunPlan::new(&preset.name, side.seed, settings), side.threads))
+pub(super) fn plan(common: &CommonPlan, side: &Side) -> Result<(RunPlan, usize), String> {
+    let preset = load_preset(common.preset)?;
+    let changes = common.changes.iter().chain(side.changes).copied();
+    let settings = with_fields(&preset.settings, changes)?;
+    Ok((RunPlan::new(&preset.name, common.seed, settings), side.threads))
 }

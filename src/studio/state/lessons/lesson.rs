@@ -42,8 +42,19 @@ pub(crate) struct LessonScene {
 pub(crate) enum Shows {
     /// The built-in champion of this name in several worlds or bodies, one per lane.
     Champion(&'static str),
-    /// Small runs of the preset of this name, whose best snakes race afterwards.
-    RunsOf(&'static str),
+    /// Small runs, whose best snakes race afterwards.
+    Runs(CommonPlan),
+}
+
+/// Preset, seed and settings that all runs of a scene share.
+#[derive(Debug)]
+pub(crate) struct CommonPlan {
+    /// Name of the preset.
+    pub preset: &'static str,
+    /// Seed of the runs.
+    pub seed: u64,
+    /// Settings that differ from the preset in all runs.
+    pub changes: SideChanges,
 }
 
 /// A lane or run that a scene compares with others.
@@ -51,31 +62,30 @@ pub(crate) enum Shows {
 pub(crate) struct Side {
     /// Label of the lane or run.
     pub name: &'static str,
-    /// Changed settings of the lane or run.
-    pub changes: LaneChanges,
+    /// Settings that differ from those of the champion, or from those that all runs of the scene have.
+    pub changes: SideChanges,
     /// Change of the champion's body, with the index of the block at which it is made. The gait is not changed.
     pub body_change: Option<(BodyChange, usize)>,
-    /// Seed of the run.
-    pub seed: u64,
     /// Number of worker threads of the run.
     pub threads: usize,
 }
 
 /// Names of changed settings, with their values as text.
-type LaneChanges = &'static [(&'static str, &'static str)];
+type SideChanges = &'static [(&'static str, &'static str)];
 
-pub(super) const fn lane(name: &'static str, changes: LaneChanges) -> Side {
-    Side { name, changes, body_change: None, seed: 1, threads: 1 }
+/// Creates a lane, or a run that computes one snake at a time.
+pub(super) const fn side(name: &'static str, changes: SideChanges) -> Side {
+    Side { name, changes, body_change: None, threads: 1 }
 }
 
 /// Creates a lane with the champion's gait in a changed body.
 pub(super) const fn lane_of_body(name: &'static str, change: BodyChange, block: usize) -> Side {
-    Side { body_change: Some((change, block)), ..lane(name, &[]) }
+    Side { body_change: Some((change, block)), ..side(name, &[]) }
 }
 
-/// Creates a run that computes one snake at a time.
-pub(super) const fn run(name: &'static str, seed: u64, changes: LaneChanges) -> Side {
-    Side { seed, ..lane(name, changes) }
+/// Returns the runs of a preset with this seed and these changed settings.
+pub(super) const fn runs_of(preset: &'static str, seed: u64, changes: SideChanges) -> Shows {
+    Shows::Runs(CommonPlan { preset, seed, changes })
 }
 
 /// Scene with the champion alone, without changes.
@@ -83,7 +93,7 @@ pub(super) const AS_FOUND: LessonScene = LessonScene {
     label: "A built-in champion",
     shows: Shows::Champion("climber"),
     question: None,
-    sides: &[lane("original", &[])],
+    sides: &[side("original", &[])],
 };
 
 pub(super) const fn furthest(finding: &'static str) -> Option<Question> {

@@ -121,20 +121,4 @@ mod tests {
         plays.follow(0.25, 15.0, Some(&end));
         assert_eq!(speeds(&plays), [4.0], "without the snake");
     }
-
-    #[test]
-    fn playbacks_at_two_speeds_are_compared_bit_by_bit() {
-        let end = Evaluation::of_fitness(26.0);
-        let mut plays = Plays::default();
-        let mut play = |speed, end: &Evaluation| {
-            plays.follow(speed, 1.0, None);
-            plays.follow(speed, 15.0, Some(end));
-            plays.are_equal()
-        };
-        assert_eq!(play(1.0, &end), None);
-        assert_eq!(play(1.0, &end), None, "the same speed again");
-        assert_eq!(play(4.0, &end), Some(true));
-        let other = Evaluation { trace_hash: end.trace_hash + 1, ..end };
-        assert_eq!(play(0.25, &other), Some(false), "equal fitness, another motion");
-    }
 }

@@ -256,6 +256,7 @@ mod tests {
             of.comparison(scene)
         };
         assert_eq!(play(1.0, 7), None);
+        assert_eq!(play(1.0, 7), None, "the same speed again");
         let words = play(4.0, 7).expect("two speeds");
         assert!(words.ends_with("end position and hash are the same at × 1 and × 4."), "{words}");
         let words = play(0.25, 8).expect("three speeds");

@@ -11,11 +11,10 @@ use snakes_lab::export::worksheet_page;
 /// # Errors
 /// The file cannot be written.
 pub(crate) fn write_worksheet(saves: &SavesFolder, lesson: usize) -> Result<PathBuf, String> {
-    let folder = saves.exports();
-    folder.prepare().map_err(|error| error.to_string())?;
-    let path = folder.free_name(&format!("worksheet-of-lesson-{}", lesson + 1), "html");
+    let name = format!("worksheet-of-lesson-{}", lesson + 1);
+    let path = saves.exports().new_file(&name, "html")?;
     let text = LESSONS.get(lesson).map_or("", |lesson| lesson.worksheet);
-    store_text(&path, &worksheet_page(text)).map_err(|error| error.to_string())?;
+    store_text(&path, &worksheet_page(text))?;
     Ok(path)
 }
 

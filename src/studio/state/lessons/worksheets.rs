@@ -61,7 +61,7 @@ fn tables(index: usize) -> String {
                 &["Run", "Best fitness (m)", "Disqualified", "Where does the best end?"]
             }
             Asks::LateBodyChanges => {
-                &["Run", "Best fitness", "Changes of the body in the second half"]
+                &["Run", "Best fitness (% of the way)", "Changes of the body in the second half"]
             }
             Asks::SameHash => &["Run", "Hash"],
         }
@@ -136,11 +136,6 @@ fn expected(index: usize) -> String {
     asked.collect::<Vec<_>>().join(" ")
 }
 
-fn file(index: usize) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("docs/worksheets");
-    folder.join(format!("{}.md", index + 1))
-}
-
 /// Estimates the printed height of a worksheet, in lines of text. On A4 with margins of 2 cm, letters of 11 points and a line spacing of
 /// 1.25, 95 characters fit on a line and 53 lines on the page, of which at most [`PAGE_LINES`] are used.
 fn printed_lines(text: &str) -> f64 {
@@ -185,7 +180,8 @@ fn each_worksheet_prints_on_one_page() {
 #[test]
 #[ignore = "writes the worksheets into docs/worksheets"]
 fn write_the_worksheets() {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("docs/worksheets");
     for index in 0..LESSONS.len() {
-        fs::write(file(index), text(index)).expect("written");
+        fs::write(folder.join(format!("{}.md", index + 1)), text(index)).expect("written");
     }
 }

@@ -8,8 +8,7 @@ use super::examination::Examination;
 use super::load::{champion_of, generation_of};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::stage::staged_champion::StagedChampion;
-use crate::studio::stage::{MAX_LANES, Show, evenly};
-use crate::studio::state::lineup::CHOSEN_GENERATIONS;
+use crate::studio::stage::{MAX_LANES, Show};
 use crate::studio::state::shares::shared;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
@@ -47,20 +46,20 @@ impl Library {
                 return self.load(true, move || generation_of(&run, generation).map(Show::solo));
             }
             LibraryCommand::RaceGenerations { run, generations } => {
-                let chosen = evenly(generations.len(), MAX_LANES, CHOSEN_GENERATIONS);
-                let champions = chosen.map(|index| generation_of(run, generations[index]));
+                let champions =
+                    generations.iter().map(|generation| generation_of(run, *generation));
                 return Ok(Some(Show::race(champions.collect::<Result<_, _>>()?)));
             }
             LibraryCommand::Rename { place, name } => {
                 self.refuse_while_busy()?;
                 let label = format!("renamed {}", self.name_of(place));
-                let step = rename(place, name.trim()).map_err(|error| error.to_string())?;
+                let step = rename(place, name.trim())?;
                 self.keep(label, vec![step], history);
             }
             LibraryCommand::SetNotes { place, text } => {
                 self.refuse_while_busy()?;
                 let label = format!("notes of {}", self.name_of(place));
-                let step = set_notes_text(place, text.trim()).map_err(|error| error.to_string())?;
+                let step = set_notes_text(place, text.trim())?;
                 self.keep(label, vec![step], history);
             }
             // The caller saves the snake, because it knows the stage.
@@ -107,8 +106,7 @@ impl Library {
             let (label, champion) = champion();
             let (preset, seed) = (preset_title(&champion.origin.preset), champion.origin.seed);
             let name = plain_name(&format!("{preset} {seed}, {label}"));
-            saves.prepare()?;
-            let path = saves.free_name(&name, "ron");
+            let path = saves.new_file(&name, "ron")?;
             let recording = Recording::of(&champion.genome, &champion.trial);
             store_champion(&path, &champion, Some(&recording))?;
             Ok(FileStep::Added { path })
@@ -117,7 +115,10 @@ impl Library {
 
     /// Loads the champions of entries, to show them side by side, or a single one alone.
     fn race(&mut self, places: &[SavePlace]) -> Result<Option<Show>, String> {
-        let known = |place: &SavePlace| (place.clone(), self.own_name(place), self.best_of(place));
+        let known = |place: &SavePlace| {
+            let own_name = self.item(place).and_then(|item| item.own_name()).map(str::to_owned);
+            (place.clone(), own_name, self.best_of(place))
+        };
         let racers: Vec<_> = places.iter().take(MAX_LANES).map(known).collect();
         let is_quick =
             racers.iter().all(|(place, _, best)| place.run().is_none() || best.is_some());

@@ -1,5 +1,6 @@
 //! Examines champions in the background, and writes the results into their files.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -34,7 +35,7 @@ impl Examination {
     /// A file cannot be read, a champion was recorded by another engine version, or no thread can be started.
     pub fn begin(places: &[SavePlace]) -> Result<Option<Self>, String> {
         let load = |(place, path): (&SavePlace, PathBuf)| {
-            let loaded = load_champion(&path).map_err(|error| error.to_string())?;
+            let loaded = load_champion(&path)?;
             let (name, engine) = (place.shown_name(), &loaded.engine);
             match loaded.is_of_this_engine() {
                 true => Ok((name, (path, loaded))),
@@ -48,10 +49,18 @@ impl Examination {
         let trials = exam_trials(&first.champion, &ExamSuite::USUAL);
         let control = Arc::new(RunControl::default());
         let shared = Arc::clone(&control);
+        let failed = |error: &dyn Display| format!("The exam could not be started: {error}");
+        let pool = LocalPool::new(1).map_err(|error| failed(&error))?;
         let work = BackgroundTask::start_counted(champions.len(), move |progress| {
-            examined(champions, &shared, progress)
+            let each = |(path, loaded): (PathBuf, LoadedChampion)| {
+                let results = examine(&loaded.champion, &ExamSuite::USUAL, &pool, &shared).ok()?;
+                let stored = store_exam(&path, &loaded, &results).map_err(String::from);
+                progress.count_one();
+                Some(stored.map(|()| exam_in_words(&results).unwrap_or_default()))
+            };
+            champions.into_iter().map(each).collect()
         });
-        let work = work.map_err(|error| format!("The exam could not be started: {error}"))?;
+        let work = work.map_err(|error| failed(&error))?;
         Ok(Some(Self { names, trials, control, work }))
     }
 
@@ -102,25 +111,6 @@ impl Examination {
             notices.update(SUBJECT, said.trim().to_owned());
         }
     }
-}
-
-/// Examines champions one after another, and writes the results into their files.
-fn examined(
-    champions: Vec<(PathBuf, LoadedChampion)>,
-    control: &RunControl,
-    progress: &RunControl,
-) -> Vec<ExamOutcome> {
-    let pool = match LocalPool::new(1) {
-        Ok(pool) => pool,
-        Err(error) => return vec![Some(Err(format!("The exam could not be started: {error}")))],
-    };
-    let each = |(path, loaded): (PathBuf, LoadedChampion)| {
-        let results = examine(&loaded.champion, &ExamSuite::USUAL, &pool, control).ok()?;
-        let stored = store_exam(&path, &loaded, &results).map_err(|error| error.to_string());
-        progress.count_one();
-        Some(stored.map(|()| exam_in_words(&results).unwrap_or_default()))
-    };
-    champions.into_iter().map(each).collect()
 }
 
 #[cfg(test)]

@@ -82,7 +82,7 @@ impl LibraryItem {
             words.push(&folder);
         }
         words.extend(self.notes().ok().map(|notes| notes.text.as_str()));
-        words.extend(self.problem_words());
+        words.extend(self.problem().map(|problem| problem.words));
         words.extend(self.preset());
         let titled = self.preset_title();
         words.extend(titled.as_deref());
@@ -129,13 +129,8 @@ impl LibraryItem {
     }
 
     /// Returns the error of reading the entry, if any.
-    pub fn problem(&self) -> Option<&str> {
-        self.read.as_ref()?.as_ref().err().map(|problem| problem.message.as_str())
-    }
-
-    /// Returns the read error in a few words, such as "damaged", if there is one.
-    pub fn problem_words(&self) -> Option<&'static str> {
-        self.read.as_ref()?.as_ref().err().map(|problem| problem.words)
+    pub fn problem(&self) -> Option<&EntryProblem> {
+        self.read.as_ref()?.as_ref().err()
     }
 
     /// Returns the user's name and notes for the entry.
@@ -233,8 +228,8 @@ impl LibraryItem {
 
     /// Describes the entry in one line for screen readers.
     pub fn label(&self) -> String {
-        if let Some((words, problem)) = self.problem_words().zip(self.problem()) {
-            return format!("{}, {words}: {problem}", self.name);
+        if let Some(EntryProblem { words, message }) = self.problem() {
+            return format!("{}, {words}: {message}", self.name);
         }
         if self.read.is_none() {
             return format!("{}, not read yet", self.name);

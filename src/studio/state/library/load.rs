@@ -29,7 +29,7 @@ fn load(place: &SavePlace, best: Option<u32>) -> Result<(LoadedChampion, Option<
         (SavePlace::Run(run), Some(best)) => load_generation(run, best).map(|it| (it, Some(best))),
         _ => load_entry(place),
     };
-    loaded.map_err(|error| error.to_string())
+    Ok(loaded?)
 }
 
 /// Returns the champion of an entry for the stage. For a run, this is its best champion, from generation `best` if that
@@ -54,7 +54,7 @@ pub fn champion_of(
 
 /// Returns the champion of a run's generation for the stage.
 pub fn generation_of(run: &Path, generation: u32) -> Result<StagedChampion, String> {
-    let loaded = load_generation(run, generation).map_err(|error| error.to_string())?;
+    let loaded = load_generation(run, generation)?;
     let identity = format!("{:?}{:?}", SavePlace::Run(run.to_owned()), Some(generation));
     Ok(shown(&loaded, &format!("Generation {generation}"), &identity))
 }

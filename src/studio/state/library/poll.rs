@@ -8,7 +8,7 @@ use crate::studio::commands::Command;
 use crate::studio::commands::files::{FileCommand, FileQuestion};
 use crate::studio::commands::library::LibraryCommand;
 use crate::studio::schedule::FrameSet;
-use crate::studio::state::current_run::{CurrentRun, RunStatus};
+use crate::studio::state::current_run::CurrentRun;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
 use snakes_core::save::library::LibraryEntry;
@@ -16,7 +16,8 @@ use snakes_lab::run::names::tell_apart;
 use snakes_lab::run::{BackgroundTask, LibraryEvent};
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Library>()
+    let saves = app.world().resource::<CurrentRun>().context.saves.clone();
+    app.insert_resource(Library::new(saves))
         .add_systems(Update, (take_drops, follow, take_in).chain().in_set(FrameSet::TakeIn));
 }
 
@@ -63,8 +64,7 @@ fn follow(
     mut seen: Local<(u32, usize)>,
     mut looked_s: Local<f32>,
 ) {
-    let goes_on = matches!(run.status(), RunStatus::Running | RunStatus::Paused);
-    let current = goes_on.then(|| run.folder());
+    let current = run.is_under_way().then(|| run.folder());
     if library.current.as_deref() != current {
         library.current = current.map(ToOwned::to_owned);
         library.revision += 1;
@@ -85,8 +85,7 @@ impl Library {
             self.examination = None;
             self.look_again();
         }
-        if let Some(loaded) = self.loading.as_ref().and_then(BackgroundTask::poll) {
-            self.loading = None;
+        if let Some(loaded) = BackgroundTask::take_result(&mut self.loading) {
             self.loaded = Some(loaded.flatten());
         }
         let Some(reader) = &self.reader else { return };
@@ -161,9 +160,8 @@ mod tests {
 
     use super::*;
     use crate::studio::state::current_run::prepared_run;
-    use snakes_core::save::EntryNotes;
-    use snakes_core::save::SavesFolder;
     use snakes_core::save::library::{EntryProblem, SavePlace};
+    use snakes_core::save::{EntryNotes, SavesFolder};
 
     #[test]
     fn during_a_run_only_its_entry_is_sorted_again_and_only_after_it_is_read() {

@@ -75,31 +75,21 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
 }
 
 #[test]
-fn a_list_replaces_a_problem_and_a_problem_keeps_the_list() {
+fn f3_the_latest_problem_is_kept_until_the_next_list_and_a_server_without_room_is_tried_again() {
     let (_folder, mut run) = held_run();
     let (mut link, mut notices) = (connecting(), Notices::default());
+    let mut hear = |link: &mut MachinesLink, news| link.take_in_news(news, &mut run, &mut notices);
+    hear(&mut link, WatchNews::Trouble("full".to_owned()));
+    assert_eq!(link.state, LinkState::Connecting(Some("full".to_owned())));
+    hear(&mut link, WatchNews::Connected { proof: "p".to_owned() });
+    assert_eq!(known(&link).problem, None);
     let mut machines = Machines::default();
     machines.queues.insert("run".to_owned(), RunQueue { batches: 2, results: 1 });
-    for news in [
-        WatchNews::Connected { proof: "p".to_owned() },
-        WatchNews::Listed(machines.clone()),
-        WatchNews::Trouble("lost".to_owned()),
-    ] {
-        link.take_in_news(news, &mut run, &mut notices);
-    }
+    hear(&mut link, WatchNews::Listed(machines.clone()));
+    hear(&mut link, WatchNews::Trouble("lost".to_owned()));
     assert_eq!(known(&link).machines.as_ref(), Some(&machines));
     assert_eq!(known(&link).problem.as_deref(), Some("lost"));
-    link.take_in_news(WatchNews::Listed(machines), &mut run, &mut notices);
-    assert_eq!(known(&link).problem, None);
-}
-
-#[test]
-fn f3_a_server_without_room_is_still_being_connected_and_the_latest_reason_is_kept() {
-    let (_folder, mut run) = held_run();
-    let (mut link, mut notices) = (connecting(), Notices::default());
-    link.take_in_news(WatchNews::Trouble("full".to_owned()), &mut run, &mut notices);
-    assert_eq!(link.state, LinkState::Connecting(Some("full".to_owned())));
-    link.take_in_news(WatchNews::Connected { proof: "p".to_owned() }, &mut run, &mut notices);
+    hear(&mut link, WatchNews::Listed(machines));
     assert_eq!(known(&link).problem, None);
 }
 

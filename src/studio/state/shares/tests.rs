@@ -3,21 +3,23 @@
 use super::*;
 use crate::studio::state::current_run::climber;
 
-fn look() -> ShareLook {
+fn look() -> StageLook {
     let overlays = vec![Overlay::Trail, Overlay::Wireframe, Overlay::Torques];
-    ShareLook { camera: CameraMode::Free, theme: Theme::Dark, overlays }
+    StageLook { camera: CameraMode::Free, theme: Theme::Dark, overlays }
 }
 
 #[test]
 fn a_film_looks_like_the_stage_and_a_table_has_no_look() {
-    let words = |format: ExportFormat| -> Vec<String> {
+    let words = |format: ExportFormat, size: FilmSize| -> Vec<String> {
         let path = PathBuf::from(format!("a.{}", format.info().ending));
-        let arguments = arguments(format, &path, &look());
+        let arguments = arguments(format, &path, (&look(), size));
         arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect()
     };
-    let film = words(ExportFormat::Gif).join(" ");
+    let film = words(ExportFormat::Gif, FilmSize::Usual).join(" ");
     assert_eq!(film, "--output a.gif --camera follow --theme dark --show trail,torques");
-    assert_eq!(words(ExportFormat::Csv).join(" "), "--output a.csv");
+    let small = words(ExportFormat::Gif, FilmSize::Small).join(" ");
+    assert_eq!(small, format!("{film} --speed 2 --most-mb 2"));
+    assert_eq!(words(ExportFormat::Csv, FilmSize::Usual).join(" "), "--output a.csv");
 }
 
 #[test]
@@ -71,7 +73,23 @@ fn a_stage_or_a_path_that_does_not_suit_the_file_is_refused_in_a_sentence() {
         (ExportFormat::Csv, 1, "climb", "climb.csv exists already; choose another name."),
     ] {
         let (race, path) = (vec![climber(0); found], folder.path().join(name));
-        let refused = Shares::default().begin(format, &path, &race, &look());
+        let refused = Shares::default().begin(format, &path, &race, (&look(), FilmSize::Usual));
         assert_eq!(refused, Err(problem.to_owned()));
     }
+}
+
+#[test]
+fn a_file_holds_the_snakes_for_which_it_was_asked_whatever_the_stage_shows_at_the_answer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.xml");
+    let mut shares = Shares::default();
+    let asked = |shares: &mut Shares, found: usize| {
+        let number = shares.ask((0..found).map(climber).collect(), look(), FilmSize::Usual);
+        shares.ask(vec![climber(0)], look(), FilmSize::Usual);
+        shares.begin_asked(ExportFormat::Mjcf, &path, number)
+    };
+    // The number of snakes in the refusal tells which ones would be written.
+    assert!(asked(&mut shares, 0).is_err_and(|why| why.contains("no snake")));
+    assert!(asked(&mut shares, 3).is_err_and(|why| why.contains("and 3 are on the stage")));
+    assert!(shares.begin_asked(ExportFormat::Mjcf, &path, 1).is_err(), "it was answered");
 }

@@ -4,16 +4,13 @@ use super::*;
 use crate::studio::stage::StageMode;
 use crate::studio::state::current_run::climber;
 use snakes_core::save::shipped_champion;
-use snakes_core::score::Trial;
+use snakes_core::score::{Ending, EndingKind, Trial};
 
 /// End of a trial without a landing.
-const NOT_LANDED: ExamEnd = ExamEnd {
-    steps: 2,
-    way: 0.2,
-    landed_s: None,
-    arrived_s: None,
-    has_landed: false,
+pub(crate) const NOT_LANDED: ExamEnd = ExamEnd {
     is_disqualified: false,
+    ending: Ending { kind: EndingKind::OutOfTime, step: 3, reason: None, ..Ending::CRASHED },
+    ..ExamEnd::CRASHED
 };
 
 /// Creates an exam in which no snake lands, without simulating it.
@@ -96,13 +93,13 @@ fn a_champion_without_stairs_or_of_another_engine_is_refused() {
 
 #[test]
 fn an_end_is_said_in_a_few_words() {
-    let end = |steps, landed_s, has_landed| ExamEnd { steps, landed_s, has_landed, ..NOT_LANDED };
+    let landed = |landed_s, has_landed| ExamEnd { landed_s, has_landed, ..NOT_LANDED };
+    let fell = Ending { kind: EndingKind::OffTheSide, step: 3, reason: None, ..Ending::CRASHED };
     for (end, words) in [
-        (end(10, Some(12.34), true), "reaches the top after 12.3 s"),
-        (end(9, Some(12.34), false), "reaches the top after 12.3 s, but does not stay"),
-        (end(3, None, false), "ends on step 3"),
-        (end(0, None, false), "climbs no step"),
-        (ExamEnd { is_disqualified: true, ..end(0, None, false) }, "is disqualified"),
+        (landed(Some(12.34), true), "reaches the top after 12.3 s"),
+        (landed(Some(12.34), false), "reaches the top after 12.3 s, but does not stay"),
+        (ExamEnd { ending: fell, ..NOT_LANDED }, "fell off the side from step 3"),
+        (ExamEnd::CRASHED, "disqualified: simulation failed"),
     ] {
         assert_eq!(end_in_words(&end), words);
     }

@@ -78,9 +78,7 @@ fn taken_over(
         trial.ground = if is_as_at_first { original.ground.clone() } else { new_ground.clone() };
     }
     let settings = Settings { trial, ..to.settings.clone() };
-    with_fields(&settings, restored)
-        .map(|settings| settings.trial)
-        .map_err(|error| error.to_string())
+    Ok(with_fields(&settings, restored)?.trial)
 }
 
 /// Returns whether a setting of the stage is kept when the preset changes, so that the lanes remain comparable.

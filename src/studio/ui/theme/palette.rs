@@ -13,237 +13,143 @@ use snakes_core::evolve::StrategyKind;
 use snakes_lab::plot;
 use snakes_lab::plot::{BAND_OPACITY, Role, role_color};
 
-/// Colours and light intensities of a theme.
-#[derive(Debug)]
-pub struct Palette {
-    /// Background of panels.
-    pub panel: Color32,
-    /// Background of a card or field.
-    pub field: Color32,
-    /// Background of a hovered field.
-    pub field_hovered: Color32,
-    /// Colour of text.
-    pub text: Color32,
-    /// Colour of explanatory text.
-    pub text_weak: Color32,
-    /// Accent colour: buttons, news, the best individual.
-    pub accent: Color32,
-    /// Colour of text on the accent colour.
-    pub on_accent: Color32,
-    /// Soft accent colour for selection and progress. Text on it remains readable.
-    pub accent_soft: Color32,
-    /// Colour of the second series in charts, such as the mean.
-    pub second: Color32,
-    /// Colour of problems.
-    pub problem: Color32,
-    /// Colour of an empty cell in the archive map.
-    pub empty_cell: Color32,
-    /// Red of the report, for the first, third and fifth limb.
-    pub red_limb: Color,
-    /// Blue of the report, for the second and fourth limb.
-    pub blue_limb: Color,
-    /// Pale colours of the other snakes of a generation, for the limbs that are red and blue in the best.
-    pub ghosts: [Color; 2],
-    /// Colour of contact forces.
-    pub force: Color,
-    /// Colour of bend torques.
-    pub bend: Color32,
-    /// Colour of twist torques.
-    pub twist: Color32,
-    /// Colour of torques in the positive direction, in the scene.
-    pub torque_plus: Color32,
-    /// Colour of torques in the negative direction, in the scene.
-    pub torque_minus: Color32,
-    /// Colours of the lanes, in their order: two hexadecimal digits each of red, green and blue. Colour-blind viewers can
-    /// tell them apart. See [`Palette::lane_color`].
-    lanes: [u32; 10],
-    /// Colour of the trail.
-    pub trail: Color,
-    /// Colour of the spring by which the mouse pulls a limb.
-    pub pull: Color,
-    /// Colour of the sky at the horizon, and of the fog.
-    pub horizon: Color,
-    /// Colour of the sky at the zenith.
-    pub zenith: Color,
-    /// Colour of clouds.
-    pub cloud: Color,
-    /// Colour of the hills behind the haze of the horizon.
-    pub hills: Color,
-    /// Colour of the disc of the sun or the moon. Channels above 1 glow.
-    pub sun_disc: Color,
-    /// Number of stars.
-    pub stars: u32,
-    /// Colour of the ground.
-    pub ground: Color,
-    /// Colour of leaves and grass.
-    pub leaves: Color,
-    /// Colour of the light from the door at the end of the landing. Channels above 1 glow.
-    pub lamp: Color,
-    /// Colour of the grid on the ground.
-    pub grid: Color,
-    /// Colour of stone: a hard surface with usual friction.
-    pub stair: Color,
-    /// Colour of ice: a surface with little friction.
-    pub ice: Color,
-    /// Colour of glue: a surface with much friction.
-    pub glue: Color,
-    /// Colour of resin: a surface with so much friction that nothing slides.
-    pub resin: Color,
-    /// Colour of rubber: a hard surface from which limbs bounce.
-    pub rubber: Color,
-    /// Colour of a trampoline's mat: a soft surface that springs back.
-    pub woven: Color,
-    /// Colour of mud: a soft surface that does not spring back.
-    pub mud: Color,
-    /// Shade of dents in a soft surface.
-    pub dent: Color,
-    /// Colour of the railing and of the door at the end of the landing.
-    pub wood: Color,
-    /// Colour of the wall at the end of the landing, and of the posts of the finish.
-    pub wall: Color,
-    /// Colour of a step's edge.
-    pub step_edge: Color,
-    /// Colour of a step's edge below the snake: the accent's hue, but too bright to be mistaken for a limb.
-    pub step_edge_lit: Color,
-    /// Translucent colour of numbers on ground and risers.
-    pub paint: Color,
-    /// Colour of the stripes along limbs, and of the eyes.
-    pub white: Color,
-    /// Colour of joints, pupils and the flag's post.
-    pub metal: Color,
-    /// Colour of the flag at the best distance.
-    pub flag: Color,
-    /// Colour of text on the flag.
-    pub flag_text: Color,
-    /// Colour of sunlight.
-    pub sun: Color,
-    /// Intensity of sunlight, in lux.
-    pub sun_lux: f32,
-    /// Colour of ambient light.
-    pub ambient: Color,
-    /// Intensity of ambient light, in cd/m²: bright enough to see shadowed sides.
-    pub ambient_cd_m2: f32,
+/// Declares the palette: in each row a field, its type, and its value in the light and in the dark theme.
+macro_rules! palette {
+    ($($(#[$about:meta])* $name:ident: $kind:ty = $light:expr, $dark:expr;)*) => {
+        /// Colours and light intensities of a theme.
+        #[derive(Debug)]
+        pub struct Palette {
+            $($(#[$about])* pub $name: $kind,)*
+        }
+
+        /// Light theme.
+        pub const LIGHT: Palette = Palette { $($name: $light,)* };
+        /// Dark theme.
+        pub const DARK: Palette = Palette { $($name: $dark,)* };
+    };
 }
 
-/// Light theme.
-pub const LIGHT: Palette = Palette {
-    panel: Color32::from_rgb(0xf6, 0xf7, 0xfa),
-    field: Color32::from_rgb(0xe5, 0xe9, 0xf0),
-    field_hovered: Color32::from_rgb(0xd3, 0xda, 0xe6),
-    text: Color32::from_rgb(0x1b, 0x22, 0x30),
-    text_weak: Color32::from_rgb(0x52, 0x5c, 0x6e),
-    accent: Color32::from_rgb(0x1a, 0x66, 0xd9),
-    on_accent: Color32::from_rgb(0xff, 0xff, 0xff),
-    accent_soft: Color32::from_rgb(0xb8, 0xd3, 0xfa),
-    second: Color32::from_rgb(0x96, 0x58, 0x00),
-    problem: Color32::from_rgb(0xbd, 0x26, 0x1d),
-    empty_cell: Color32::from_rgb(0xda, 0xdf, 0xe8),
-    red_limb: Color::srgb(0.86, 0.13, 0.12),
-    blue_limb: Color::srgb(0.10, 0.27, 0.84),
-    ghosts: [Color::srgb(0.95, 0.80, 0.78), Color::srgb(0.78, 0.84, 0.96)],
-    force: Color::srgb(0.02, 0.45, 0.30),
-    bend: Color32::from_rgb(0x1a, 0x66, 0xd9),
-    twist: Color32::from_rgb(0xb3, 0x5c, 0x00),
-    torque_plus: Color32::from_rgb(0xe0, 0x7b, 0x00),
-    torque_minus: Color32::from_rgb(0x00, 0x7d, 0xd6),
-    lanes: [
-        0xd1781b, 0x1094e3, 0x311a56, 0x434be3, 0xe64e96, 0x666c37, 0x652019, 0x1f5073, 0x0e0dad,
-        0xd80f00,
-    ],
-    trail: Color::srgb(0.55, 0.20, 0.65),
-    pull: Color::srgb(0.80, 0.30, 0.05),
-    horizon: Color::srgb(0.97, 0.93, 0.87),
-    zenith: Color::srgb(0.42, 0.66, 0.92),
-    cloud: Color::srgb(1.0, 0.98, 0.95),
-    hills: Color::srgb(0.58, 0.68, 0.72),
-    sun_disc: Color::linear_rgb(2.4, 2.1, 1.5),
-    stars: 0,
-    ground: Color::srgb(0.70, 0.77, 0.63),
-    leaves: Color::srgb(0.40, 0.58, 0.30),
-    lamp: Color::linear_rgb(1.9, 1.25, 0.55),
-    grid: Color::srgba(0.0, 0.06, 0.10, 0.10),
-    stair: Color::srgb(0.81, 0.80, 0.78),
-    ice: Color::srgb(0.72, 0.90, 1.0),
-    glue: Color::srgb(0.93, 0.60, 0.08),
-    resin: Color::srgb(0.66, 0.33, 0.08),
-    rubber: Color::srgb(0.52, 0.54, 0.53),
-    woven: Color::srgb(0.12, 0.72, 0.66),
-    mud: Color::srgb(0.42, 0.29, 0.18),
-    dent: Color::srgba(0.05, 0.04, 0.05, 0.62),
-    wood: Color::srgb(0.62, 0.45, 0.29),
-    wall: Color::srgb(0.90, 0.88, 0.84),
-    step_edge: Color::srgb(0.60, 0.57, 0.52),
-    step_edge_lit: Color::srgb(0.05, 0.72, 1.0),
-    paint: Color::srgba(0.06, 0.12, 0.18, 0.62),
-    white: Color::srgb(0.97, 0.96, 0.93),
-    metal: Color::srgb(0.16, 0.17, 0.20),
-    flag: Color::srgb(1.0, 0.79, 0.28),
-    flag_text: Color::srgb(0.16, 0.13, 0.08),
-    sun: Color::srgb(1.0, 0.97, 0.92),
-    sun_lux: 3_600.0,
-    ambient: Color::srgb(0.90, 0.95, 1.0),
-    ambient_cd_m2: 320.0,
-};
+palette! {
+    /// Background of panels.
+    panel: Color32 = rgb(0xf6f7fa), rgb(0x1d212b);
+    /// Background of a card or field.
+    field: Color32 = rgb(0xe5e9f0), rgb(0x282e3b);
+    /// Background of a hovered field.
+    field_hovered: Color32 = rgb(0xd3dae6), rgb(0x363e4f);
+    /// Colour of text.
+    text: Color32 = rgb(0x1b2230), rgb(0xeceff4);
+    /// Colour of explanatory text.
+    text_weak: Color32 = rgb(0x525c6e), rgb(0xa3acbd);
+    /// Accent colour: buttons, news, the best individual.
+    accent: Color32 = rgb(0x1a66d9), rgb(0x4f9df7);
+    /// Colour of text on the accent colour.
+    on_accent: Color32 = rgb(0xffffff), rgb(0x0d131e);
+    /// Soft accent colour for selection and progress. Text on it remains readable.
+    accent_soft: Color32 = rgb(0xb8d3fa), rgb(0x315d94);
+    /// Colour of the second series in charts, such as the mean.
+    second: Color32 = rgb(0x965800), rgb(0xf2b14b);
+    /// Colour of problems.
+    problem: Color32 = rgb(0xbd261d), rgb(0xf06a5f);
+    /// Colour of an empty cell in the archive map.
+    empty_cell: Color32 = rgb(0xdadfe8), rgb(0x12151c);
+    /// Red of the report, for the first, third and fifth limb.
+    red_limb: Color = Color::srgb(0.86, 0.13, 0.12), Color::srgb(0.88, 0.14, 0.14);
+    /// Blue of the report, for the second and fourth limb.
+    blue_limb: Color = Color::srgb(0.10, 0.27, 0.84), Color::srgb(0.14, 0.32, 0.95);
+    /// Pale colours of the other snakes of a generation, for the limbs that are red and blue in the best.
+    ghosts: [Color; 2] =
+        [Color::srgb(0.95, 0.80, 0.78), Color::srgb(0.78, 0.84, 0.96)],
+        [Color::srgb(0.46, 0.35, 0.35), Color::srgb(0.32, 0.37, 0.49)];
+    /// Colour of contact forces.
+    force: Color = Color::srgb(0.02, 0.45, 0.30), Color::srgb(0.45, 0.95, 0.70);
+    /// Colour of bend torques.
+    bend: Color32 = rgb(0x1a66d9), rgb(0x6cb0ff);
+    /// Colour of twist torques.
+    twist: Color32 = rgb(0xb35c00), rgb(0xffb85c);
+    /// Colour of torques in the positive direction, in the scene.
+    torque_plus: Color32 = rgb(0xe07b00), rgb(0xffb03b);
+    /// Colour of torques in the negative direction, in the scene.
+    torque_minus: Color32 = rgb(0x007dd6), rgb(0x62c0ff);
+    /// Colours of the lanes, in their order: two hexadecimal digits each of red, green and blue. Colour-blind viewers can
+    /// tell them apart. See [`Palette::lane_color`].
+    lanes: [u32; 10] =
+        [0xd1781b, 0x1094e3, 0x311a56, 0x434be3, 0xe64e96,
+         0x666c37, 0x652019, 0x1f5073, 0x0e0dad, 0xd80f00],
+        [0xcaa419, 0x95c6ff, 0xffffff, 0x505aea, 0xfacaa7,
+         0x1daea5, 0x8c5a91, 0x8092ff, 0xffff45, 0xd0471d];
+    /// Colour of the trail.
+    trail: Color = Color::srgb(0.55, 0.20, 0.65), Color::srgb(0.88, 0.62, 0.98);
+    /// Colour of the spring by which the mouse pulls a limb.
+    pull: Color = Color::srgb(0.80, 0.30, 0.05), Color::srgb(1.0, 0.72, 0.35);
+    /// Colour of the sky at the horizon, and of the fog.
+    horizon: Color = Color::srgb(0.97, 0.93, 0.87), Color::srgb(0.24, 0.27, 0.37);
+    /// Colour of the sky at the zenith.
+    zenith: Color = Color::srgb(0.42, 0.66, 0.92), Color::srgb(0.05, 0.07, 0.15);
+    /// Colour of clouds.
+    cloud: Color = Color::srgb(1.0, 0.98, 0.95), Color::srgb(0.24, 0.27, 0.37);
+    /// Colour of the hills behind the haze of the horizon.
+    hills: Color = Color::srgb(0.58, 0.68, 0.72), Color::srgb(0.10, 0.13, 0.20);
+    /// Colour of the disc of the sun or the moon. Channels above 1 glow.
+    sun_disc: Color = Color::linear_rgb(2.4, 2.1, 1.5), Color::linear_rgb(1.2, 1.25, 1.35);
+    /// Number of stars.
+    stars: u32 = 0, 240;
+    /// Colour of the ground.
+    ground: Color = Color::srgb(0.70, 0.77, 0.63), Color::srgb(0.20, 0.26, 0.28);
+    /// Colour of leaves and grass.
+    leaves: Color = Color::srgb(0.40, 0.58, 0.30), Color::srgb(0.14, 0.28, 0.20);
+    /// Colour of the light from the door at the end of the landing. Channels above 1 glow.
+    lamp: Color = Color::linear_rgb(1.9, 1.25, 0.55), Color::linear_rgb(1.9, 1.15, 0.45);
+    /// Colour of the grid on the ground.
+    grid: Color = Color::srgba(0.0, 0.06, 0.10, 0.10), Color::srgba(0.75, 0.85, 1.0, 0.08);
+    /// Colour of stone: a hard surface with usual friction.
+    stair: Color = Color::srgb(0.81, 0.80, 0.78), Color::srgb(0.47, 0.49, 0.53);
+    /// Colour of ice: a surface with little friction.
+    ice: Color = Color::srgb(0.72, 0.90, 1.0), Color::srgb(0.55, 0.73, 0.86);
+    /// Colour of glue: a surface with much friction.
+    glue: Color = Color::srgb(0.93, 0.60, 0.08), Color::srgb(0.72, 0.46, 0.10);
+    /// Colour of resin: a surface with so much friction that nothing slides.
+    resin: Color = Color::srgb(0.66, 0.33, 0.08), Color::srgb(0.45, 0.22, 0.06);
+    /// Colour of rubber: a hard surface from which limbs bounce.
+    rubber: Color = Color::srgb(0.52, 0.54, 0.53), Color::srgb(0.30, 0.32, 0.32);
+    /// Colour of a trampoline's mat: a soft surface that springs back.
+    woven: Color = Color::srgb(0.12, 0.72, 0.66), Color::srgb(0.06, 0.50, 0.47);
+    /// Colour of mud: a soft surface that does not spring back.
+    mud: Color = Color::srgb(0.42, 0.29, 0.18), Color::srgb(0.27, 0.185, 0.12);
+    /// Shade of dents in a soft surface.
+    dent: Color = Color::srgba(0.05, 0.04, 0.05, 0.62), Color::srgba(0.0, 0.0, 0.0, 0.70);
+    /// Colour of the railing and of the door at the end of the landing.
+    wood: Color = Color::srgb(0.62, 0.45, 0.29), Color::srgb(0.44, 0.33, 0.23);
+    /// Colour of the wall at the end of the landing, and of the posts of the finish.
+    wall: Color = Color::srgb(0.90, 0.88, 0.84), Color::srgb(0.50, 0.52, 0.56);
+    /// Colour of a step's edge.
+    step_edge: Color = Color::srgb(0.60, 0.57, 0.52), Color::srgb(0.30, 0.33, 0.38);
+    /// Colour of a step's edge below the snake: the accent's hue, but too bright to be mistaken for a limb.
+    step_edge_lit: Color = Color::srgb(0.05, 0.72, 1.0), Color::srgb(0.40, 0.80, 1.0);
+    /// Translucent colour of numbers on ground and risers.
+    paint: Color = Color::srgba(0.06, 0.12, 0.18, 0.62), Color::srgba(0.85, 0.92, 1.0, 0.60);
+    /// Colour of the stripes along limbs, and of the eyes.
+    white: Color = Color::srgb(0.97, 0.96, 0.93), Color::srgb(0.93, 0.94, 0.96);
+    /// Colour of joints, pupils and the flag's post.
+    metal: Color = Color::srgb(0.16, 0.17, 0.20), Color::srgb(0.10, 0.11, 0.13);
+    /// Colour of the flag at the best distance.
+    flag: Color = Color::srgb(1.0, 0.79, 0.28), Color::srgb(1.0, 0.75, 0.28);
+    /// Colour of text on the flag.
+    flag_text: Color = Color::srgb(0.16, 0.13, 0.08), Color::srgb(0.13, 0.11, 0.07);
+    /// Colour of sunlight.
+    sun: Color = Color::srgb(1.0, 0.97, 0.92), Color::srgb(1.0, 0.96, 0.90);
+    /// Intensity of sunlight, in lux.
+    sun_lux: f32 = 3_600.0, 2_900.0;
+    /// Colour of ambient light.
+    ambient: Color = Color::srgb(0.90, 0.95, 1.0), Color::srgb(0.72, 0.82, 1.0);
+    /// Intensity of ambient light, in cd/m²: bright enough to see shadowed sides.
+    ambient_cd_m2: f32 = 320.0, 260.0;
+}
 
-/// Dark theme.
-pub const DARK: Palette = Palette {
-    panel: Color32::from_rgb(0x1d, 0x21, 0x2b),
-    field: Color32::from_rgb(0x28, 0x2e, 0x3b),
-    field_hovered: Color32::from_rgb(0x36, 0x3e, 0x4f),
-    text: Color32::from_rgb(0xec, 0xef, 0xf4),
-    text_weak: Color32::from_rgb(0xa3, 0xac, 0xbd),
-    accent: Color32::from_rgb(0x4f, 0x9d, 0xf7),
-    on_accent: Color32::from_rgb(0x0d, 0x13, 0x1e),
-    accent_soft: Color32::from_rgb(0x31, 0x5d, 0x94),
-    second: Color32::from_rgb(0xf2, 0xb1, 0x4b),
-    problem: Color32::from_rgb(0xf0, 0x6a, 0x5f),
-    empty_cell: Color32::from_rgb(0x12, 0x15, 0x1c),
-    red_limb: Color::srgb(0.88, 0.14, 0.14),
-    blue_limb: Color::srgb(0.14, 0.32, 0.95),
-    ghosts: [Color::srgb(0.46, 0.35, 0.35), Color::srgb(0.32, 0.37, 0.49)],
-    force: Color::srgb(0.45, 0.95, 0.70),
-    bend: Color32::from_rgb(0x6c, 0xb0, 0xff),
-    twist: Color32::from_rgb(0xff, 0xb8, 0x5c),
-    torque_plus: Color32::from_rgb(0xff, 0xb0, 0x3b),
-    torque_minus: Color32::from_rgb(0x62, 0xc0, 0xff),
-    lanes: [
-        0xcaa419, 0x95c6ff, 0xffffff, 0x505aea, 0xfacaa7, 0x1daea5, 0x8c5a91, 0x8092ff, 0xffff45,
-        0xd0471d,
-    ],
-    trail: Color::srgb(0.88, 0.62, 0.98),
-    pull: Color::srgb(1.0, 0.72, 0.35),
-    horizon: Color::srgb(0.24, 0.27, 0.37),
-    zenith: Color::srgb(0.05, 0.07, 0.15),
-    cloud: Color::srgb(0.24, 0.27, 0.37),
-    hills: Color::srgb(0.10, 0.13, 0.20),
-    sun_disc: Color::linear_rgb(1.2, 1.25, 1.35),
-    stars: 240,
-    ground: Color::srgb(0.20, 0.26, 0.28),
-    leaves: Color::srgb(0.14, 0.28, 0.20),
-    lamp: Color::linear_rgb(1.9, 1.15, 0.45),
-    grid: Color::srgba(0.75, 0.85, 1.0, 0.08),
-    stair: Color::srgb(0.47, 0.49, 0.53),
-    ice: Color::srgb(0.55, 0.73, 0.86),
-    glue: Color::srgb(0.72, 0.46, 0.10),
-    resin: Color::srgb(0.45, 0.22, 0.06),
-    rubber: Color::srgb(0.30, 0.32, 0.32),
-    woven: Color::srgb(0.06, 0.50, 0.47),
-    mud: Color::srgb(0.27, 0.185, 0.12),
-    dent: Color::srgba(0.0, 0.0, 0.0, 0.70),
-    wood: Color::srgb(0.44, 0.33, 0.23),
-    wall: Color::srgb(0.50, 0.52, 0.56),
-    step_edge: Color::srgb(0.30, 0.33, 0.38),
-    step_edge_lit: Color::srgb(0.40, 0.80, 1.0),
-    paint: Color::srgba(0.85, 0.92, 1.0, 0.60),
-    white: Color::srgb(0.93, 0.94, 0.96),
-    metal: Color::srgb(0.10, 0.11, 0.13),
-    flag: Color::srgb(1.0, 0.75, 0.28),
-    flag_text: Color::srgb(0.13, 0.11, 0.07),
-    sun: Color::srgb(1.0, 0.96, 0.90),
-    sun_lux: 2_900.0,
-    ambient: Color::srgb(0.72, 0.82, 1.0),
-    ambient_cd_m2: 260.0,
-};
+/// Returns the colour with this code: two hexadecimal digits each of red, green and blue.
+const fn rgb(code: u32) -> Color32 {
+    let [_, red, green, blue] = code.to_be_bytes();
+    Color32::from_rgb(red, green, blue)
+}
 
 /// Colour of a snake's belly, as a factor of [`Palette::white`] for red, green and blue.
 pub const BELLY_TONE: Vec3 = Vec3::new(0.95, 0.80, 0.55);
@@ -300,8 +206,7 @@ impl Palette {
     /// Returns the colour of a lane, used on the snake's collar, beside its lane, in lists and in charts. The first
     /// lane is 0; after ten lanes the colours repeat.
     pub fn lane_color(&self, number: usize) -> Color32 {
-        let [_, red, green, blue] = self.lanes[number % self.lanes.len()].to_be_bytes();
-        Color32::from_rgb(red, green, blue)
+        rgb(self.lanes[number % self.lanes.len()])
     }
 
     /// Shifts a colour towards the text colour until it is readable on the panel.

@@ -14,7 +14,7 @@ choices! {
             "Energy used per weight and way along the stairs. A walking person has 0.2, a climbing snake more.";
         ClimbingEfficiency = "climbing_efficiency", "Climbing efficiency",
             "Share of the energy used that lifted the snake.";
-        ContactDuty = "contact_duty", "Share of limbs in contact", "Mean share of limbs that touch something.";
+        ContactDuty = "contact_duty", "Share of blocks in contact", "Mean share of blocks that touch something.";
         Frequency = "frequency", "Gait frequency (Hz)", "How often the motion repeats per second.";
     }
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::genome::Genome;
+use crate::genome::{Genome, GenomeSpace};
 use crate::score::Evaluation;
 
 /// A member of the Pareto front.
@@ -55,7 +55,7 @@ impl Front {
             && evaluation.effort.is_some()
             && evaluation.centre_y_m > start_y_m
             && !rivals.any(|(_, known)| energy_j(&known.evaluation) <= energy_j(evaluation))
-            && genome.gene_count() <= LARGEST_MEMBER_GENES
+            && genome.gene_count(&GenomeSpace::default()) <= LARGEST_MEMBER_GENES
     }
 
     /// Adds an individual if [`Self::accepts`] allows it, and removes the members that the individual beats.

@@ -9,8 +9,8 @@ setting_group! {
     pub struct CmaEsSettings in "CMA-ES": "Learns in which directions variation pays off." {
         /// Standard deviation of the first generation, as a share of each gene's range.
         step: f32 = 0.3,
-            number("Initial step size", 1.0e-6..=10.0)
-                .hint("Spread of the first generation, as a share of each gene's range. Small steps search nearby")
+            number("Size of first mutations", 1.0e-6..=10.0)
+                .hint("How much snakes differ from the start of the search, as a share of each gene's range. Small values search nearby")
                 .slider(0.01, 1.0)
                 .logarithmic_from(0.01)
                 .fixed(LEARNED);

@@ -51,7 +51,7 @@ setting_group! {
 
         /// Initial step size of the CMA-ES emitter around an elite, as a share of each gene's range.
         cma_step: f32 = 0.1,
-            number("CMA-ES initial step size", 1.0e-6..=1.0).advanced()
+            number("Size of first CMA-ES mutations", 1.0e-6..=1.0).advanced()
                 .hint("Initial spread of CMA-ES around an elite, as a share of each gene's range")
                 .slider(0.001, 1.0)
                 .logarithmic_from(0.001);

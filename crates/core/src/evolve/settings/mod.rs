@@ -84,7 +84,7 @@ impl SettingGroup for Settings {
             "Takes effect with the next run, because existing genomes would not fit new ones.",
         );
         walk.group("genome", genome);
-        walk.meet(AgentSettings::SENSING, genome.controller.senses_surroundings());
+        walk.meet(AgentSettings::SENSING, genome.senses_surroundings());
         walk.meet(AgentSettings::GIVEN_BODY, !genome.bodies.vary);
         walk.meet(AgentSettings::OWN_BODIES, genome.bodies.vary);
         walk.meet(AgentSettings::SOFT_LIMBS, are_limbs_soft(&genome.bodies, &trial.agent));

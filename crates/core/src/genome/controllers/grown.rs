@@ -56,7 +56,7 @@ impl GrownGenes {
         }
         let index = index - joints;
         if index <= joints {
-            return format!("limb {} touch", index + 1);
+            return format!("block {} touch", index + 1);
         }
         GROWN_INPUTS.get(index - joints - 1).copied().unwrap_or("").to_owned()
     }

@@ -28,11 +28,11 @@ pub const JOINT_BITS: [[&str; 2]; 12] = [
     ["joint ahead sagging", "joint ahead not sagging"],
     ["joint behind arched", "joint behind not arched"],
     ["joint behind sagging", "joint behind not sagging"],
-    ["limb ahead touches", "limb ahead does not touch"],
-    ["limb behind touches", "limb behind does not touch"],
-    ["riser within a metre of the limb ahead", "no riser within a metre of the limb ahead"],
+    ["block ahead touches", "block ahead does not touch"],
+    ["block behind touches", "block behind does not touch"],
+    ["riser within a metre of the block ahead", "no riser within a metre of the block ahead"],
     ["step ahead", "no step ahead"],
-    ["limb ahead raised", "limb ahead not raised"],
+    ["block ahead raised", "block ahead not raised"],
     ["moving", "not moving"],
 ];
 

@@ -37,7 +37,7 @@ pub use decisions::{
     TABLE_QUESTIONS, TABLE_STATES,
 };
 pub use encoding::JointCommands;
-pub use gait::Gait;
+pub use gait::{Gait, Steering};
 pub use grown::{GROWN_INPUTS, GrownGenes};
 pub use joint_decisions::{JOINT_BENDS, JOINT_BITS, JointDecisionGenes};
 pub use layer::Layer;

@@ -8,6 +8,7 @@ use super::encoding::{
 };
 use super::gait::Gait;
 use super::servo::twists;
+use crate::check::Invalid;
 use crate::genome::gene::{GeneRange, Genes, GenomeShape, Quantity};
 use crate::genome::limits::LIMIT;
 use crate::genome::network_space::WEIGHT;
@@ -76,7 +77,7 @@ impl ControllerEncoding for ReflexGait {
     }
 
     fn genes(&mut self, space: &GenomeSpace, genes: &mut Genes<'_>) {
-        self.gait.genes(space, genes);
+        self.gait.genes_without_steering(space, genes);
         let network = &space.network;
         let range = GeneRange::Between(0.0, network.reflex_reach_rad);
         genes.gene("reach_rad", "reflex reach", LIMIT, range, &mut self.reach_rad);
@@ -110,6 +111,15 @@ impl ControllerEncoding for ReflexGait {
 
     fn joints(&self) -> usize {
         self.gait.joints()
+    }
+
+    fn check_rest(&self) -> Result<(), Invalid> {
+        if self.gait.steering.is_used() {
+            let allowed =
+                "none in a gait with reflexes, whose twist reflexes move the same targets";
+            return Err(Invalid::new("gait.steering", "used", allowed));
+        }
+        Ok(())
     }
 
     fn widen(&self, space: &mut GenomeSpace) {

@@ -5,7 +5,7 @@ use crate::control::ActiveSenses;
 use crate::genome::{HELD_OUT_PER_CLASS, StairsClass, held_out};
 use crate::rng::{Purpose, stream};
 use crate::schema::Choices;
-use crate::score::perturbation::draw_shove;
+use crate::score::perturbation_range::draw_shove;
 use crate::score::{Perturbation, PerturbationRange, Trial};
 use crate::world::Stairs;
 

@@ -5,9 +5,11 @@ use crate::genome::StairsGenome;
 use crate::schema::Choices;
 use crate::score::PerPart;
 
+mod endings;
+
 fn end(steps: u32, way: f32, landed_s: Option<f32>) -> ExamEnd {
     let has_landed = landed_s.is_some();
-    ExamEnd { steps, way, landed_s, arrived_s: None, has_landed, is_disqualified: false }
+    ExamEnd { steps, way, landed_s, has_landed, is_disqualified: false, ..ExamEnd::CRASHED }
 }
 
 #[test]

@@ -8,15 +8,19 @@ use crate::world::{Disqualification, Simulation};
 
 /// Returns the kinetic and potential energy of all limbs, in J. The engine's positions are half a substep ahead of its velocities.
 fn mechanical_energy_j(simulation: &Simulation) -> f64 {
-    let physics = simulation.physics();
+    let world = simulation.in_rapier();
+    let physics = world.physics();
     let parameters = &physics.integration_parameters;
     let half_substep_s = parameters.dt / parameters.num_solver_iterations as f32 / 2.0;
-    let energies_j =
-        physics.bodies.iter().filter(|(_, body)| body.is_dynamic()).map(|(_, body)| {
-            let height_m = body.center_of_mass().z - body.linvel().z * half_substep_s;
-            let weight_n = -physics.gravity.z * body.mass();
-            f64::from(body.kinetic_energy()) + f64::from(weight_n * height_m)
-        });
+    let bodies = world.bodies().iter().map(|&part| &physics.bodies[part]);
+    let energies_j = bodies.zip(simulation.parts()).map(|(body, part)| {
+        let inertia = body.mass_properties().local_mprops.principal_inertia();
+        let rate = part.turn.inverse() * part.angular;
+        let moving_j = body.mass() * part.linear.length_squared() + (inertia * rate).dot(rate);
+        let height_m = part.at.z - part.linear.z * half_substep_s;
+        let weight_n = -physics.gravity.z * body.mass();
+        f64::from(moving_j / 2.0) + f64::from(weight_n * height_m)
+    });
     energies_j.sum()
 }
 

@@ -6,7 +6,8 @@
 //! both engines see the same contacts.
 
 use super::shared_points::{Plane, SharedPoint, SharedPoints, sign};
-use crate::world::Vector;
+use super::wide::{Wide, WideRotation};
+use crate::world::{Pose, Vector};
 
 /// A box with its pose in the world.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +31,13 @@ pub(super) fn out_of(axes: &[Vector; 3], vector: Vector) -> Vector {
 }
 
 impl Block {
+    /// Returns a box of half these sizes in a pose.
+    pub fn at(pose: Pose, half_m: Vector) -> Self {
+        let [x, y, z, w] = pose.rotation.to_array().map(|part| Wide([part]));
+        let axes = WideRotation { x, y, z, w }.axes().map(|axis| axis.get(0));
+        Self { centre: pose.translation, axes, half_m }
+    }
+
     /// Converts a direction from the block's own frame to the world.
     pub fn turned(&self, direction: Vector) -> Vector {
         out_of(&self.axes, direction)
@@ -72,22 +80,30 @@ fn face_along(half_m: Vector, direction: Vector) -> Face {
     } else {
         2
     };
-    let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
-    let side = sign(direction[axis]);
+    match axis {
+        0 => face_across::<0>(half_m, sign(direction.x)),
+        1 => face_across::<1>(half_m, sign(direction.y)),
+        _ => face_across::<2>(half_m, sign(direction.z)),
+    }
+}
+
+/// Returns the face of a box on one side of an axis: 1 for its positive half, else -1.
+fn face_across<const AXIS: usize>(half_m: Vector, side: f32) -> Face {
+    let (next, last) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
     let mut corners = [Vector::ZERO; 4];
     let mut numbers = [0; 4];
     for (index, signs) in
         [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].into_iter().enumerate()
     {
         let mut of_axis = Vector::ZERO;
-        of_axis[axis] = side;
+        of_axis[AXIS] = side;
         of_axis[next] = signs[0];
         of_axis[last] = signs[1];
         corners[index] = of_axis * half_m;
         let bit = |value: f32, bit: u8| if value < 0.0 { bit } else { 0 };
         numbers[index] = bit(of_axis.x, 1) | bit(of_axis.y, 2) | bit(of_axis.z, 4);
     }
-    Face { corners, numbers, number: 8 + 2 * axis as u8 + u8::from(side < 0.0) }
+    Face { corners, numbers, number: 8 + 2 * AXIS as u8 + u8::from(side < 0.0) }
 }
 
 /// Number of the only face of the ground.
@@ -371,13 +387,8 @@ mod tests {
     use rapier3d::parry::shape::Cuboid;
 
     use crate::rng::{Purpose, stream};
-    use crate::world::{Pose, Rotation};
+    use crate::world::Rotation;
     use rand::RngExt;
-
-    fn block(pose: &Pose, half_m: Vector) -> Block {
-        let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| pose.rotation * axis);
-        Block { centre: pose.translation, axes, half_m }
-    }
 
     /// Random boxes have the contacts that rapier finds: as many points in the same places, along the same normal.
     #[test]
@@ -397,7 +408,7 @@ mod tests {
             let shapes = half_m.map(Cuboid::new);
             let mut manifold: ContactManifold<(), ()> = ContactManifold::new();
             contact_manifold_cuboid_cuboid(&between, &shapes[0], &shapes[1], 0.02, &mut manifold);
-            let blocks = [block(&poses[0], half_m[0]), block(&poses[1], half_m[1])];
+            let blocks = [0, 1].map(|index| Block::at(poses[index], half_m[index]));
             let touches = of_blocks(&blocks[0], &blocks[1], 0.02, &mut found);
             if !touches && manifold.points.is_empty() {
                 continue;
@@ -425,8 +436,8 @@ mod tests {
     /// A corner that moved from a riser to the tread above must not keep its impulse, which would then push along the new normal.
     #[test]
     fn a_corner_on_another_face_is_another_point() {
-        let step = block(&Pose::IDENTITY, Vector::new(2.0, 1.0, 0.5));
-        let at = |place| block(&Pose::from_translation(place), Vector::splat(0.5));
+        let step = Block::at(Pose::IDENTITY, Vector::new(2.0, 1.0, 0.5));
+        let at = |place| Block::at(Pose::from_translation(place), Vector::splat(0.5));
         let features = |place| {
             let mut found = SharedPoints::default();
             assert!(of_blocks(&step, &at(place), 0.02, &mut found));

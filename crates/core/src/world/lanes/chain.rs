@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::block::Block;
 use super::contact::Contact;
 use super::joint::{Joint, JointShape, in_groups};
-use super::wide::{Wide, WideRotation};
 use crate::world::contact::soft_contacts;
+use crate::world::engine::{PartState, Touch, Touching};
 use crate::world::surface::ContactLaw;
 use crate::world::{Vector, WorldPlan};
 
@@ -20,38 +20,6 @@ pub(super) struct ChainPart {
     pub mass_kg: f32,
     /// Moments of inertia of the part about its own axes, in kg·m².
     pub inertia_kg_m2: Vector,
-}
-
-/// The state of a part at the beginning and at the end of a step.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct PartState {
-    /// Centre of the part, in metres.
-    pub at: Vector,
-    /// Rotation of the part as a quaternion: x, y, z and w.
-    pub turn: [f32; 4],
-    /// Velocity of the part's centre, in m/s.
-    pub linear: Vector,
-    /// Angular velocity of the part in the world, in rad/s.
-    pub angular: Vector,
-    /// Force on the part's centre besides gravity, in N.
-    pub force_n: Vector,
-    /// Torque on the part in the world, in N·m.
-    pub torque_nm: Vector,
-    /// Whether the part is held in its place, so that nothing moves it.
-    pub is_held: bool,
-}
-
-impl PartState {
-    /// Returns the velocity of the part at a place in the world, in m/s.
-    pub fn velocity_at(&self, at: Vector) -> Vector {
-        self.linear + self.angular.cross(at - self.at)
-    }
-
-    /// Returns the axes of the part in the world.
-    pub fn axes(&self) -> [Vector; 3] {
-        let [x, y, z, w] = self.turn.map(|part| Wide([part]));
-        WideRotation { x, y, z, w }.axes().map(|axis| axis.get(0))
-    }
 }
 
 /// Parameters of a contact: friction, bounce and softness.
@@ -112,8 +80,8 @@ pub(crate) struct Chain {
     pub(super) pairs: Vec<[usize; 2]>,
     pub(super) solids: Arc<[Solid]>,
     pub(super) laws: Laws,
-    /// Gravity, in m/s². It is set before each step, together with the state.
-    pub gravity: Vector,
+    /// Gravity, in m/s².
+    pub(super) gravity: Vector,
     /// State of the parts: after the last step, and before the next one.
     pub state: Vec<PartState>,
     /// Contacts of the last step: first the contacts between parts, then those of each part with the world.
@@ -122,6 +90,8 @@ pub(crate) struct Chain {
     pub(super) earlier: Vec<Contact>,
     /// Boxes of the parts, and half the sizes of the axis-aligned boxes around them. The memory is reused in each step.
     pub(super) blocks: Vec<(Block, Vector)>,
+    /// Indices of the solids near the snake. The memory is reused in each step.
+    pub(super) near: Vec<usize>,
 }
 
 impl Chain {
@@ -132,10 +102,9 @@ impl Chain {
             .parts
             .iter()
             .map(|part| {
-                let [w2, l2, h2] = part.size_m().map(|size_m| size_m * size_m);
-                let mass_kg = part.mass_kg();
-                let inertia_kg_m2 = Vector::new(l2 + h2, w2 + h2, w2 + l2) * (mass_kg / 12.0);
-                ChainPart { half_m: Vector::from(part.size_m()) / 2.0, mass_kg, inertia_kg_m2 }
+                let half_m = Vector::from(part.size_m()) / 2.0;
+                let (mass_kg, inertia_kg_m2) = (part.mass_kg(), part.inertia_kg_m2());
+                ChainPart { half_m, mass_kg, inertia_kg_m2 }
             })
             .collect();
         let joints = body.joints.iter().map(|joint| {
@@ -182,11 +151,12 @@ impl Chain {
             joints,
             solids: solids(plan),
             laws,
-            gravity: Vector::ZERO,
-            state: vec![PartState::default(); count],
+            gravity: physics.gravity(),
+            state: plan.start_poses().into_iter().map(PartState::at_rest).collect(),
             contacts: Vec::new(),
             earlier: Vec::new(),
             blocks: Vec::with_capacity(count),
+            near: Vec::new(),
             parts,
         }
     }
@@ -196,42 +166,50 @@ impl Chain {
         self.common.clone()
     }
 
-    /// Returns the mass of a part, in kg, and its inertia about its own axes, in kg·m²; `None` if the snake has no such part.
-    pub fn mass_of(&self, part: usize) -> Option<(f32, Vector)> {
-        self.parts.get(part).map(|part| (part.mass_kg, part.inertia_kg_m2))
-    }
-
     /// Returns the box of a part in its present state.
     pub(super) fn block(&self, part: usize) -> Block {
-        let state = &self.state[part];
-        Block { centre: state.at, axes: state.axes(), half_m: self.parts[part].half_m }
+        Block::at(self.state[part].pose(), self.parts[part].half_m)
     }
 
-    /// Copies the contacts of a snake with the same body on the same stairs, so that this snake continues with their impulses.
-    pub fn take_contacts_of(&mut self, other: &Self) {
-        self.contacts.clone_from(&other.contacts);
+    /// Computes what each part touches.
+    pub(super) fn read_touches(&mut self) {
+        for state in &mut self.state {
+            state.touch = Touch::default();
+        }
+        for contact in &self.contacts {
+            let touch = &mut self.state[contact.part].touch;
+            match contact.other {
+                Touching::Ground => touch.ground = true,
+                Touching::Solid(_) => touch.stairs = true,
+                Touching::Part(_) => continue,
+            }
+            let pressed_ns: f32 = contact.points().iter().map(|point| point.impulse_ns).sum();
+            if pressed_ns > 0.0 {
+                touch.force_n += contact.normal * pressed_ns + contact.friction_ns;
+            }
+        }
+        let substep_s = self.common.step_s / self.common.substeps as f32;
+        for state in &mut self.state {
+            state.touch.force_n /= substep_s;
+        }
     }
 
-    /// Returns whether both snakes have the same stairs.
-    pub fn has_solids_of(&self, other: &Self) -> bool {
+    /// Continues with the contacts of a snake with the same body, if both have the same stairs.
+    pub fn continue_from(&mut self, earlier: &Self) {
         let places = |of: &Self| {
-            of.solids
-                .iter()
-                .map(|solid| (solid.block.centre, solid.block.half_m, solid.block.axes))
-                .collect::<Vec<_>>()
+            let solids = of.solids.iter().map(|solid| &solid.block);
+            solids.map(|block| (block.centre, block.half_m, block.axes)).collect::<Vec<_>>()
         };
-        places(self) == places(other)
+        if places(self) == places(earlier) {
+            self.contacts.clone_from(&earlier.contacts);
+            self.read_touches();
+        }
     }
 }
 
 fn solids(plan: &WorldPlan) -> Arc<[Solid]> {
     let solids = plan.stairs.solids().into_iter().map(|solid| {
-        let state = PartState {
-            at: solid.pose.translation,
-            turn: solid.pose.rotation.to_array(),
-            ..PartState::default()
-        };
-        let block = Block { centre: state.at, axes: state.axes(), half_m: solid.half_m };
+        let block = Block::at(solid.pose, solid.half_m);
         let reach_m = block.reach_m();
         Solid { low: block.centre - reach_m, high: block.centre + reach_m, block }
     });
@@ -242,29 +220,27 @@ fn solids(plan: &WorldPlan) -> Arc<[Solid]> {
 mod tests {
     use super::*;
     use crate::save::library::shipped_champions;
-    use crate::world::{PhysicsEngine, Simulation};
+    use crate::world::rapier::RapierWorld;
 
     /// The plans of all built-in champions: rigid limbs in a row, some of them short, creatures and soft snakes.
     fn plans() -> impl Iterator<Item = (&'static str, WorldPlan)> {
-        shipped_champions().into_iter().map(|(name, loaded)| {
-            let mut plan = loaded.champion.trial.world_plan(&loaded.champion.genome);
-            plan.physics.engine = PhysicsEngine::Rapier;
-            (name, plan)
-        })
+        shipped_champions()
+            .into_iter()
+            .map(|(name, loaded)| (name, loaded.champion.trial.world_plan(&loaded.champion.genome)))
     }
 
     #[test]
     fn the_same_parts_can_touch_as_in_rapier() {
         let mut soft = 0;
         for (name, plan) in plans() {
-            let simulation = Simulation::new(&plan);
-            let physics = simulation.physics();
-            let groups = simulation.parts().iter().map(|&part| {
+            let world = RapierWorld::new(&plan);
+            let physics = world.physics();
+            let groups = world.bodies().iter().map(|&part| {
                 physics.colliders[physics.bodies[part].colliders()[0]].collision_groups()
             });
             let groups: Vec<_> = groups.collect();
             let joined = |pair: [usize; 2]| {
-                let bodies = pair.map(|part| simulation.parts()[part]);
+                let bodies = pair.map(|part| world.bodies()[part]);
                 let mut joints = physics.impulse_joints.iter();
                 joints
                     .any(|(_, of)| !of.data.contacts_enabled && [of.body1(), of.body2()] == bodies)

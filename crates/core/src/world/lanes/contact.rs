@@ -1,24 +1,14 @@
 //! Finds the contacts of a snake at the beginning of a step, and gives each contact its initial impulses.
 
 use super::block::{Block, of_blocks, on_ground};
-use super::chain::{Chain, Law};
+use super::chain::{Chain, Law, Solid};
 use super::shared_points::{MOST_POINTS, SharedPoints};
 use crate::world::Vector;
 use crate::world::contact::SlippingPatch;
+use crate::world::engine::{PartContact, PartContactPoint, Touching};
 
 /// Distance up to which approaching bodies count as a contact, in metres, as in rapier.
 const WITHIN_M: f32 = 0.02;
-
-/// The body that a part touches.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Touching {
-    /// The part touches the ground.
-    Ground,
-    /// The part touches the solid of the stairs with this index.
-    Solid(usize),
-    /// The part touches another part, closer to the head, with this index.
-    Part(usize),
-}
 
 /// A point of a contact, with its impulses.
 #[derive(Debug, Clone, Copy, Default)]
@@ -72,6 +62,18 @@ impl Contact {
         &self.points[..self.count]
     }
 
+    /// Returns the contact as it is read after a step.
+    pub fn seen(&self) -> PartContact {
+        let Self { part, other, normal, friction_ns, twist_nms, .. } = *self;
+        let points = self.points().iter().map(|point| {
+            let ContactPoint { on_part, on_other, impulse_ns, .. } = *point;
+            PartContactPoint { on_part, on_other, impulse_ns }
+        });
+        let (points, friction) = (points.collect(), self.material_friction);
+        let has_bounced = Chain::bounces(self);
+        PartContact { part, other, normal, friction, friction_ns, twist_nms, has_bounced, points }
+    }
+
     pub(super) fn points_mut(&mut self) -> &mut [ContactPoint] {
         &mut self.points[..self.count]
     }
@@ -85,6 +87,18 @@ struct Bodies<'a> {
     first: Option<&'a Block>,
     second: &'a Block,
     law: Law,
+}
+
+impl Solid {
+    /// Returns whether an axis-aligned box between these corners is too far away for a contact.
+    fn is_far(&self, low: Vector, high: Vector) -> bool {
+        self.low.y - high.y > WITHIN_M
+            || low.y - self.high.y > WITHIN_M
+            || low.z - self.high.z > WITHIN_M
+            || self.low.x - high.x > WITHIN_M
+            || low.x - self.high.x > WITHIN_M
+            || self.low.z - high.z > WITHIN_M
+    }
 }
 
 impl Chain {
@@ -112,6 +126,15 @@ impl Chain {
                 self.add_contact(&bodies, &found, &mut contacts);
             }
         }
+        // The solids that no part can touch are left out for all parts at once.
+        let mut near = std::mem::take(&mut self.near);
+        near.clear();
+        let ends = |of: fn(Vector, Vector) -> Vector, corner: fn(&(Block, Vector)) -> Vector| {
+            blocks.iter().map(corner).reduce(of).unwrap_or(Vector::ZERO)
+        };
+        let low = ends(Vector::min, |(block, reach_m)| block.centre - *reach_m);
+        let high = ends(Vector::max, |(block, reach_m)| block.centre + *reach_m);
+        near.extend((0..self.solids.len()).filter(|index| !self.solids[*index].is_far(low, high)));
         for (part, (block, reach_m)) in blocks.iter().enumerate() {
             let (low, high) = (block.centre - *reach_m, block.centre + *reach_m);
             if low.z <= WITHIN_M && on_ground(block, WITHIN_M, &mut found) {
@@ -119,14 +142,9 @@ impl Chain {
                 let bodies = Bodies { part, other, first: None, second: block, law };
                 self.add_contact(&bodies, &found, &mut contacts);
             }
-            for (index, solid) in self.solids.iter().enumerate() {
-                let is_far = solid.low.y - high.y > WITHIN_M
-                    || low.y - solid.high.y > WITHIN_M
-                    || low.z - solid.high.z > WITHIN_M
-                    || solid.low.x - high.x > WITHIN_M
-                    || low.x - solid.high.x > WITHIN_M
-                    || solid.low.z - high.z > WITHIN_M;
-                if is_far {
+            for &index in &near {
+                let solid = &self.solids[index];
+                if solid.is_far(low, high) {
                     continue;
                 }
                 if of_blocks(&solid.block, block, WITHIN_M, &mut found) {
@@ -139,6 +157,7 @@ impl Chain {
         }
         self.contacts = contacts;
         self.blocks = blocks;
+        self.near = near;
     }
 
     /// Adds the contact of two bodies, with the impulses that its points had in the step before. Adds nothing if no point is near enough.

@@ -1,14 +1,14 @@
 //! The constraint rows of the contacts: a row for each point prevents approach, and friction holds the contact as a whole.
 
+use super::LANES;
 use super::chain::{Chain, LanesCommon, MOST_CORRECTION_PER_S};
-use super::contact::Touching;
 use super::part::WidePart;
 use super::shared_points::{MOST_POINTS, basis};
 use super::wide::{Wide, WideVector};
 use crate::world::Vector;
 
 /// One point of a contact per lane.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct WidePoint<const N: usize> {
     /// Levers from the centres of the two touching bodies to the point, at the beginning of the step, in the world.
     levers: [WideVector<N>; 2],
@@ -30,12 +30,13 @@ struct WidePoint<const N: usize> {
 }
 
 /// One contact in each lane: in all lanes between the same part and the world, or between the same two parts.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct WideContact<const N: usize> {
     /// Index of the contact in the list of its snake; `None` in lanes without this contact.
-    contacts: [Option<usize>; N],
-    part: usize,
-    other: Option<usize>,
+    contacts: [Option<usize>; LANES],
+    /// Indices of the touching parts. The first `ends` of them count: two, or one for a contact with the world.
+    bodies: [usize; 2],
+    ends: usize,
     normal: WideVector<N>,
     tangents: [WideVector<N>; 2],
     friction: Wide<N>,
@@ -59,22 +60,6 @@ pub(super) struct WideContact<const N: usize> {
     twist_impulse: Wide<N>,
 }
 
-impl<const N: usize> WidePoint<N> {
-    const EMPTY: Self = Self {
-        levers: [WideVector::ZERO; 2],
-        own: [WideVector::ZERO; 2],
-        axes: [WideVector::ZERO; 2],
-        by_inertia: [WideVector::ZERO; 2],
-        mass: Wide::ZERO,
-        distance_m: Wide::ZERO,
-        from_middle_m: Wide::ZERO,
-        bias: Wide::ZERO,
-        softening: Wide::ZERO,
-        impulse: Wide::ZERO,
-        total: Wide::ZERO,
-    };
-}
-
 /// Returns how far a point of a part has moved since the beginning of the step.
 #[inline(always)]
 fn moved<const N: usize>(
@@ -85,34 +70,19 @@ fn moved<const N: usize>(
     (part.at - part.began_at) + (own.out_of_frame(&part.axes) - lever)
 }
 
-impl<const N: usize> WideContact<N> {
-    pub const EMPTY: Self = Self {
-        contacts: [None; N],
-        part: 0,
-        other: None,
-        normal: WideVector::ZERO,
-        tangents: [WideVector::ZERO; 2],
-        friction: Wide::ZERO,
-        correction_per_s: Wide::ZERO,
-        softening: Wide::ZERO,
-        points: [WidePoint::EMPTY; MOST_POINTS],
-        count: 0,
-        levers: [WideVector::ZERO; 2],
-        own: [WideVector::ZERO; 2],
-        tangent_axes: [[WideVector::ZERO; 2]; 2],
-        tangents_by_inertia: [[WideVector::ZERO; 2]; 2],
-        tangent_masses: [Wide::ZERO; 3],
-        tangent_bias: [Wide::ZERO; 2],
-        tangent_impulse: [Wide::ZERO; 2],
-        twist_by_inertia: [WideVector::ZERO; 2],
-        twist_mass: Wide::ZERO,
-        twist_impulse: Wide::ZERO,
-    };
+/// Returns a number as it counts for the part of a contact, end 0, or with the opposite sign for the other part, end 1.
+#[inline(always)]
+fn on_end<const N: usize>(end: usize, number: Wide<N>) -> Wide<N> {
+    if end == 0 { number } else { -number }
+}
 
+impl<const N: usize> WideContact<N> {
     /// Begins a contact that no lane has loaded yet. It clears all values that `load` sets, so that a lane without the contact keeps no
-    /// numbers of an earlier snake; all other values are computed from these.
+    /// numbers of an earlier snake; all other values are computed from these. `load` itself clears each point that it loads first.
     pub fn begin(&mut self, part: usize, other: Option<usize>) {
-        (self.part, self.other, self.count, self.contacts) = (part, other, 0, [None; N]);
+        self.bodies = [part, other.unwrap_or(part)];
+        self.ends = if other.is_some() { 2 } else { 1 };
+        (self.count, self.contacts) = (0, [None; LANES]);
         self.normal = WideVector::ZERO;
         self.tangents = [WideVector::ZERO; 2];
         self.levers = [WideVector::ZERO; 2];
@@ -121,11 +91,6 @@ impl<const N: usize> WideContact<N> {
         }
         (self.tangent_impulse, self.tangent_bias) = ([Wide::ZERO; 2], [Wide::ZERO; 2]);
         self.twist_impulse = Wide::ZERO;
-        for point in &mut self.points {
-            point.levers = [WideVector::ZERO; 2];
-            (point.mass, point.distance_m) = (Wide::ZERO, Wide::ZERO);
-            (point.from_middle_m, point.impulse) = (Wide::ZERO, Wide::ZERO);
-        }
     }
 
     /// Loads contact number `index` of a snake into a lane.
@@ -141,18 +106,23 @@ impl<const N: usize> WideContact<N> {
         self.correction_per_s.0[lane] = contact.correction_per_s;
         self.softening.0[lane] = contact.softening;
         let points = contact.points();
-        self.count = self.count.max(points.len());
-        let part_at = chain.state[contact.part].at;
-        let other_at = match contact.other {
-            Touching::Part(front) => chain.state[front].at,
-            Touching::Ground | Touching::Solid(_) => Vector::ZERO,
-        };
+        while self.count < points.len() {
+            // No lane has loaded this point yet.
+            let point = &mut self.points[self.count];
+            point.levers = [WideVector::ZERO; 2];
+            (point.mass, point.distance_m) = (Wide::ZERO, Wide::ZERO);
+            (point.from_middle_m, point.impulse) = (Wide::ZERO, Wide::ZERO);
+            self.count += 1;
+        }
         let middle = points.iter().map(|point| point.at).sum::<Vector>() / points.len() as f32;
-        self.levers[0].set(lane, middle - part_at);
-        self.levers[1].set(lane, middle - other_at);
+        for end in 0..self.ends {
+            let centre = chain.state[self.bodies[end]].at;
+            self.levers[end].set(lane, middle - centre);
+            for (wide, point) in self.points.iter_mut().zip(points) {
+                wide.levers[end].set(lane, point.at - centre);
+            }
+        }
         for (wide, point) in self.points.iter_mut().zip(points) {
-            wide.levers[0].set(lane, point.at - part_at);
-            wide.levers[1].set(lane, point.at - other_at);
             wide.mass.0[lane] = 1.0;
             wide.distance_m.0[lane] = point.distance_m;
             let from_middle = middle - point.at;
@@ -184,78 +154,56 @@ impl<const N: usize> WideContact<N> {
         }
     }
 
-    /// Returns the part, and the other part if the contact is between two parts.
-    #[inline(always)]
-    fn ends<'a>(&self, parts: &'a [WidePart<N>]) -> (&'a WidePart<N>, Option<&'a WidePart<N>>) {
-        (&parts[self.part], self.other.map(|other| &parts[other]))
-    }
-
     /// Builds the rows for a step.
     #[inline(always)]
     pub fn build(&mut self, parts: &[WidePart<N>]) {
-        let (part, other) = self.ends(parts);
-        let normal = self.normal;
-        let inverse_kg = part.inverse_kg + other.map_or(Wide::ZERO, |other| other.inverse_kg);
+        let (mut inverse_kg, mut twist) = (Wide::ZERO, Wide::ZERO);
+        let [mut xx, mut xy, mut yy] = [Wide::ZERO; 3];
+        for end in 0..self.ends {
+            inverse_kg += parts[self.bodies[end]].inverse_kg;
+        }
         for point in &mut self.points[..self.count] {
-            let axis = point.levers[0].cross(normal);
-            point.axes[0] = axis;
-            point.by_inertia[0] = part.inverse_inertia.of(axis);
-            point.own[0] = point.levers[0].into_frame(&part.axes);
-            let mut inverse_mass = inverse_kg + point.by_inertia[0].dot(axis);
-            if let Some(other) = other {
-                let axis = point.levers[1].cross(normal);
-                point.axes[1] = axis;
-                point.by_inertia[1] = other.inverse_inertia.of(axis);
-                point.own[1] = point.levers[1].into_frame(&other.axes);
-                inverse_mass += point.by_inertia[1].dot(axis);
+            let mut inverse_mass = inverse_kg;
+            for end in 0..self.ends {
+                let part = &parts[self.bodies[end]];
+                point.axes[end] = point.levers[end].cross(self.normal);
+                point.by_inertia[end] = part.inverse_inertia.of(point.axes[end]);
+                point.own[end] = point.levers[end].into_frame(&part.axes);
+                inverse_mass += point.by_inertia[end].dot(point.axes[end]);
             }
             point.mass = point.mass * inverse_mass.inverse();
             // The initial impulse comes from the step before and is not part of this step's total: the first substep adds it.
             point.total = -point.impulse;
         }
-        self.own[0] = self.levers[0].into_frame(&part.axes);
-        if let Some(other) = other {
-            self.own[1] = self.levers[1].into_frame(&other.axes);
-        }
-        for axis in 0..2 {
-            let of_part = self.levers[0].cross(self.tangents[axis]);
-            self.tangent_axes[axis][0] = of_part;
-            self.tangents_by_inertia[axis][0] = part.inverse_inertia.of(of_part);
-            if let Some(other) = other {
-                let of_other = self.levers[1].cross(self.tangents[axis]);
-                self.tangent_axes[axis][1] = of_other;
-                self.tangents_by_inertia[axis][1] = other.inverse_inertia.of(of_other);
+        for end in 0..self.ends {
+            let part = &parts[self.bodies[end]];
+            self.own[end] = self.levers[end].into_frame(&part.axes);
+            for axis in 0..2 {
+                let around = self.levers[end].cross(self.tangents[axis]);
+                self.tangent_axes[axis][end] = around;
+                self.tangents_by_inertia[axis][end] = part.inverse_inertia.of(around);
             }
+            let [x, y] = self.tangents_by_inertia.map(|of| of[end]);
+            let axes = self.tangent_axes.map(|of| of[end]);
+            (xx, xy, yy) = (xx + x.dot(axes[0]), xy + x.dot(axes[1]), yy + y.dot(axes[1]));
+            self.twist_by_inertia[end] = part.inverse_inertia.of(self.normal);
+            twist += self.twist_by_inertia[end].dot(self.normal);
         }
-        let product = |a: usize, b: usize| {
-            let of_part = self.tangents_by_inertia[a][0].dot(self.tangent_axes[b][0]);
-            match other {
-                Some(_) => of_part + self.tangents_by_inertia[a][1].dot(self.tangent_axes[b][1]),
-                None => of_part,
-            }
-        };
-        let (xx, xy, yy) = (inverse_kg + product(0, 0), product(0, 1), inverse_kg + product(1, 1));
+        let (xx, yy) = (inverse_kg + xx, inverse_kg + yy);
         let of_determinant = (xx * yy - xy * xy).inverse();
         self.tangent_masses = [yy * of_determinant, -(xy * of_determinant), xx * of_determinant];
-
-        self.twist_by_inertia[0] = part.inverse_inertia.of(normal);
-        let mut twist = self.twist_by_inertia[0].dot(normal);
-        if let Some(other) = other {
-            self.twist_by_inertia[1] = other.inverse_inertia.of(normal);
-            twist += self.twist_by_inertia[1].dot(normal);
-        }
         self.twist_mass = twist.inverse();
     }
 
     /// Returns the present distance of a point along the normal.
     #[inline(always)]
     fn distance_m(&self, parts: &[WidePart<N>], point: &WidePoint<N>) -> Wide<N> {
-        let (part, other) = self.ends(parts);
-        let by = moved(part, point.own[0], point.levers[0]).dot(self.normal);
-        let by = match other {
-            Some(other) => by - moved(other, point.own[1], point.levers[1]).dot(self.normal),
-            None => by,
-        };
+        let mut by = Wide::ZERO;
+        for end in 0..self.ends {
+            let part = &parts[self.bodies[end]];
+            let along = moved(part, point.own[end], point.levers[end]).dot(self.normal);
+            by += on_end(end, along);
+        }
         point.distance_m + by
     }
 
@@ -281,12 +229,11 @@ impl<const N: usize> WideContact<N> {
             self.push(parts, index, impulse);
         }
         if common.has_springs {
-            let (part, other) = self.ends(parts);
-            let by = moved(part, self.own[0], self.levers[0]);
-            let by = match other {
-                Some(other) => by - moved(other, self.own[1], self.levers[1]),
-                None => by,
-            };
+            let mut by = WideVector::ZERO;
+            for end in 0..self.ends {
+                let way = moved(&parts[self.bodies[end]], self.own[end], self.levers[end]);
+                by = if end == 0 { by + way } else { by - way };
+            }
             self.tangent_bias = self.tangents.map(|tangent| by.dot(tangent) * per_substep);
         }
         let (twist, along) = (self.twist_impulse, self.tangent_impulse);
@@ -307,39 +254,27 @@ impl<const N: usize> WideContact<N> {
 
     #[inline(always)]
     fn push(&self, parts: &mut [WidePart<N>], index: usize, change: Wide<N>) {
-        let point = &self.points[index];
-        let part = &mut parts[self.part];
-        part.linear += self.normal * (change * part.inverse_kg);
-        part.angular += point.by_inertia[0] * change;
-        if let Some(other) = self.other {
-            let other = &mut parts[other];
-            other.linear -= self.normal * (change * other.inverse_kg);
-            other.angular -= point.by_inertia[1] * change;
+        for end in 0..self.ends {
+            let (part, change) = (&mut parts[self.bodies[end]], on_end(end, change));
+            part.linear += self.normal * (change * part.inverse_kg);
+            part.angular += self.points[index].by_inertia[end] * change;
         }
     }
 
     #[inline(always)]
     fn push_along(&self, parts: &mut [WidePart<N>], change: [Wide<N>; 2]) {
-        let along = self.tangents[0] * change[0] + self.tangents[1] * change[1];
-        let turning = |end: usize| {
-            self.tangents_by_inertia[0][end] * change[0]
-                + self.tangents_by_inertia[1][end] * change[1]
-        };
-        let part = &mut parts[self.part];
-        part.linear += along * part.inverse_kg;
-        part.angular += turning(0);
-        if let Some(other) = self.other {
-            let other = &mut parts[other];
-            other.linear -= along * other.inverse_kg;
-            other.angular -= turning(1);
+        for end in 0..self.ends {
+            let (part, [x, y]) = (&mut parts[self.bodies[end]], change.map(|of| on_end(end, of)));
+            part.linear += (self.tangents[0] * x + self.tangents[1] * y) * part.inverse_kg;
+            let [of_x, of_y] = self.tangents_by_inertia.map(|of| of[end]);
+            part.angular += of_x * x + of_y * y;
         }
     }
 
     #[inline(always)]
     fn twist(&self, parts: &mut [WidePart<N>], change: Wide<N>) {
-        parts[self.part].angular += self.twist_by_inertia[0] * change;
-        if let Some(other) = self.other {
-            parts[other].angular -= self.twist_by_inertia[1] * change;
+        for end in 0..self.ends {
+            parts[self.bodies[end]].angular += self.twist_by_inertia[end] * on_end(end, change);
         }
     }
 
@@ -348,11 +283,11 @@ impl<const N: usize> WideContact<N> {
     pub fn solve_normal(&mut self, parts: &mut [WidePart<N>]) {
         for index in 0..self.count {
             let point = &mut self.points[index];
-            let part = &parts[self.part];
-            let mut speed = self.normal.dot(part.linear) + point.axes[0].dot(part.angular);
-            if let Some(other) = self.other {
-                let other = &parts[other];
-                speed = speed - self.normal.dot(other.linear) - point.axes[1].dot(other.angular);
+            let mut speed = Wide::ZERO;
+            for end in 0..self.ends {
+                let part = &parts[self.bodies[end]];
+                speed += on_end(end, self.normal.dot(part.linear));
+                speed += on_end(end, point.axes[end].dot(part.angular));
             }
             let wanted = point.impulse - point.mass * (speed + point.bias);
             let impulse = point.softening * wanted.max(Wide::ZERO);
@@ -372,9 +307,9 @@ impl<const N: usize> WideContact<N> {
         }
         let (most, most_twist) = (most * self.friction, most_twist * self.friction);
         if self.count > 1 {
-            let mut spin = parts[self.part].angular;
-            if let Some(other) = self.other {
-                spin -= parts[other].angular;
+            let mut spin = parts[self.bodies[0]].angular;
+            if self.ends == 2 {
+                spin -= parts[self.bodies[1]].angular;
             }
             let wanted = self.twist_impulse - self.twist_mass * self.normal.dot(spin);
             let impulse = wanted.max(-most_twist).min(most_twist);
@@ -382,16 +317,12 @@ impl<const N: usize> WideContact<N> {
             self.twist_impulse = impulse;
             self.twist(parts, change);
         }
-        let part = &parts[self.part];
-        let mut speeds = [0, 1].map(|axis| {
-            self.tangents[axis].dot(part.linear) + self.tangent_axes[axis][0].dot(part.angular)
-        });
-        if let Some(other) = self.other {
-            let other = &parts[other];
+        let mut speeds = [Wide::ZERO; 2];
+        for end in 0..self.ends {
+            let part = &parts[self.bodies[end]];
             for (axis, speed) in speeds.iter_mut().enumerate() {
-                *speed = *speed
-                    - self.tangents[axis].dot(other.linear)
-                    - self.tangent_axes[axis][1].dot(other.angular);
+                *speed += on_end(end, self.tangents[axis].dot(part.linear));
+                *speed += on_end(end, self.tangent_axes[axis][end].dot(part.angular));
             }
         }
         let [u, v] = [speeds[0] + self.tangent_bias[0], speeds[1] + self.tangent_bias[1]];

@@ -8,7 +8,7 @@ use super::part::{WidePart, both};
 use super::wide::{Wide, WideRotation, WideVector};
 
 /// A row that only concerns rotations. Its axis is the same for both parts.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct TurnRow<const N: usize> {
     axis: WideVector<N>,
     /// Products of both parts' inverse inertias with the axis.
@@ -21,7 +21,7 @@ struct TurnRow<const N: usize> {
 }
 
 /// A row that concerns linear and angular velocities.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 struct JointRow<const N: usize> {
     direction: WideVector<N>,
     axes: [WideVector<N>; 2],
@@ -36,7 +36,7 @@ struct JointRow<const N: usize> {
 
 /// One universal joint per lane, or one spring in each lane. A spring has the same rows, but the two of the motors and the lock yield: each
 /// is elastic about one axis.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WideJoint<const N: usize> {
     /// Indices of the two connected parts, the front one first.
     pub parts: [usize; 2],
@@ -65,21 +65,12 @@ pub(super) struct WideJoint<const N: usize> {
 }
 
 impl<const N: usize> TurnRow<N> {
-    const EMPTY: Self = Self {
-        axis: WideVector::ZERO,
-        by_inertia: [WideVector::ZERO; 2],
-        inverse: Wide::ZERO,
-        bias: Wide::ZERO,
-        compliance: Wide::ZERO,
-        impulse: Wide::ZERO,
-    };
-
     /// Builds a row about an axis, and returns it with its inverse mass.
     #[inline(always)]
     fn about(axis: WideVector<N>, [front, rear]: [&WidePart<N>; 2]) -> (Self, Wide<N>) {
         let by_inertia = [front.inverse_inertia.of(axis), rear.inverse_inertia.of(axis)];
         let inverse_mass = by_inertia[0].dot(axis) + by_inertia[1].dot(axis);
-        (Self { axis, by_inertia, ..Self::EMPTY }, inverse_mass)
+        (Self { axis, by_inertia, ..Self::default() }, inverse_mass)
     }
 
     #[inline(always)]
@@ -93,17 +84,6 @@ impl<const N: usize> TurnRow<N> {
 }
 
 impl<const N: usize> JointRow<N> {
-    const EMPTY: Self = Self {
-        direction: WideVector::ZERO,
-        axes: [WideVector::ZERO; 2],
-        by_inertia: [WideVector::ZERO; 2],
-        inverse: Wide::ZERO,
-        bias: Wide::ZERO,
-        compliance: Wide::ZERO,
-        impulse: Wide::ZERO,
-        range: [Wide::ZERO; 2],
-    };
-
     /// Returns the product of two rows, weighted by the inverse masses of both parts. The product of a row with itself is its inverse
     /// mass.
     #[inline(always)]
@@ -171,24 +151,6 @@ impl<const N: usize> JointRow<N> {
 }
 
 impl<const N: usize> WideJoint<N> {
-    pub const EMPTY: Self = Self {
-        parts: [0; 2],
-        is_spring: false,
-        mount: None,
-        elastic: [[Wide::ZERO; 2]; 3],
-        anchors_m: [Wide::ZERO; 2],
-        damping: Wide::ZERO,
-        is_damped: Wide::ZERO,
-        half_limits: [[Wide::ZERO; 2]; 2],
-        correction_per_s: Wide::ZERO,
-        compliance: Wide::ZERO,
-        motors: [TurnRow::EMPTY; 2],
-        lock: TurnRow::EMPTY,
-        anchors: [JointRow::EMPTY; 3],
-        limits: [JointRow::EMPTY; 2],
-        is_limited: [false; 2],
-    };
-
     /// Loads joint or spring number `index` of a snake into a lane.
     pub fn load(&mut self, lane: usize, chain: &Chain, index: usize) {
         let joint = &chain.joints[index];
@@ -198,8 +160,7 @@ impl<const N: usize> WideJoint<N> {
         (self.is_spring, self.mount) = match joint.hold {
             Hold::Straight => (false, None),
             Hold::Mounted { at_m, turn } => {
-                let (mut place_m, mut rotation) =
-                    self.mount.unwrap_or((WideVector::ZERO, WideRotation::IDENTITY));
+                let (mut place_m, mut rotation) = self.mount.unwrap_or_default();
                 place_m.set(lane, at_m);
                 rotation.set(lane, turn);
                 (false, Some((place_m, rotation)))
@@ -281,7 +242,7 @@ impl<const N: usize> WideJoint<N> {
             let axes = [levers[0].cross(direction), levers[1].cross(direction)];
             let by_inertia = [front.inverse_inertia.of(axes[0]), rear.inverse_inertia.of(axes[1])];
             let bias = direction.dot(gap) * self.correction_per_s;
-            *row = JointRow { direction, axes, by_inertia, bias, ..JointRow::EMPTY };
+            *row = JointRow { direction, axes, by_inertia, bias, ..JointRow::default() };
             if !self.is_spring {
                 row.take_out_turn(&self.lock, lock_inverse);
             }
@@ -313,7 +274,7 @@ impl<const N: usize> WideJoint<N> {
             let by_inertia =
                 [front.inverse_inertia.of(direction), rear.inverse_inertia.of(direction)];
             let row = &mut self.limits[axis];
-            *row = JointRow { axes: [direction; 2], by_inertia, bias, ..JointRow::EMPTY };
+            *row = JointRow { axes: [direction; 2], by_inertia, bias, ..JointRow::default() };
             row.take_out_turn(&self.lock, lock_inverse);
             for (anchor, inverse) in self.anchors.iter().zip(inverses) {
                 row.take_out(anchor, inverse, inverse_kg);

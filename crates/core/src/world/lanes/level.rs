@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::Level;
 
 use crate::check::Invalid;
 
@@ -22,7 +22,10 @@ impl VectorLevel {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         let stronger = {
             let best = Level::new();
-            [best.as_sse4_2().map(Simd::level), best.as_avx2().map(Simd::level)]
+            [
+                best.as_sse4_2().map(fearless_simd::Simd::level),
+                best.as_avx2().map(fearless_simd::Simd::level),
+            ]
         };
         #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
         let stronger = [Some(Level::new())];

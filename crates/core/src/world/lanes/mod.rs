@@ -43,9 +43,11 @@ mod restitution;
 mod shared_points;
 mod solver;
 mod wide;
+mod world;
 
+use chain::Chain;
 pub use chain::LanesCommon;
-pub(crate) use chain::{Chain, PartState};
-pub(crate) use contact::{Contact, ContactPoint, Touching};
 pub use level::VectorLevel;
+pub use solver::LANES;
 pub(crate) use solver::LaneSolver;
+pub(crate) use world::LanesWorld;

@@ -8,7 +8,7 @@ const MOST_M_S: f32 = 400.0;
 pub(super) const MOST_TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
 
 /// One part of the snake per lane.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WidePart<const N: usize> {
     pub at: WideVector<N>,
     /// Position of the centre at the beginning of the step.
@@ -41,25 +41,10 @@ pub(super) fn both<const N: usize>(
 }
 
 impl<const N: usize> WidePart<N> {
-    pub const EMPTY: Self = Self {
-        at: WideVector::ZERO,
-        began_at: WideVector::ZERO,
-        turn: WideRotation::IDENTITY,
-        axes: [WideVector::ZERO; 3],
-        linear: WideVector::ZERO,
-        angular: WideVector::ZERO,
-        inverse_kg: Wide::ONE,
-        moves: Wide::ONE,
-        inverse_inertia: WideSymmetric::ZERO,
-        inertia: WideVector { x: Wide::ONE, y: Wide::ONE, z: Wide::ONE },
-        adds_linear: WideVector::ZERO,
-        adds_angular: WideVector::ZERO,
-    };
-
     pub fn load(&mut self, lane: usize, chain: &Chain, index: usize) {
         let (part, state) = (&chain.parts[index], &chain.state[index]);
         self.at.set(lane, state.at);
-        self.turn.set(lane, state.turn);
+        self.turn.set(lane, state.turn.to_array());
         self.linear.set(lane, state.linear);
         self.angular.set(lane, state.angular);
         let moves = if state.is_held { 0.0 } else { 1.0 };
@@ -73,8 +58,7 @@ impl<const N: usize> WidePart<N> {
     pub fn store(&self, lane: usize, chain: &mut Chain, index: usize) {
         let state = &mut chain.state[index];
         state.at = self.at.get(lane);
-        state.turn =
-            [self.turn.x.0[lane], self.turn.y.0[lane], self.turn.z.0[lane], self.turn.w.0[lane]];
+        state.turn = self.turn.get(lane);
         state.linear = self.linear.get(lane);
         state.angular = self.angular.get(lane);
     }

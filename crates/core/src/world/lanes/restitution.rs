@@ -4,9 +4,10 @@
 //! points before it, so a block that lands on a whole face needs several rounds over its corners until all agree.
 
 use super::block::out_of;
-use super::chain::{Chain, PartState};
-use super::contact::{Contact, Touching};
+use super::chain::Chain;
+use super::contact::{Contact, ContactPoint};
 use crate::world::Vector;
+use crate::world::engine::{PartState, Touching};
 
 /// Number of rounds over the points of a step. After ten, the speeds of a block's four corners agree to a thousandth.
 const ROUNDS: u32 = 16;
@@ -32,14 +33,14 @@ impl Chain {
         contact.bounce > 0.0 && points.any(|point| Self::bounces_at(contact, point))
     }
 
-    fn bounces_at(contact: &Contact, point: &super::contact::ContactPoint) -> bool {
+    fn bounces_at(contact: &Contact, point: &ContactPoint) -> bool {
         // A point that already carried load in the step before does not bounce, unless the restitution is 1.
         (point.is_new || contact.bounce >= 1.0) && point.incoming_m_s > 0.0 && point.total_ns > 0.0
     }
 
     /// Returns the change of angular velocity by a unit impulse at a point: the product of the inverse inertia with `lever × normal`.
     fn turning(&self, part: usize, lever: Vector, normal: Vector) -> Vector {
-        let axes = self.state[part].axes();
+        let axes = self.block(part).axes;
         let around = lever.cross(normal);
         let inertia = self.parts[part].inertia_kg_m2;
         axes[0] * (axes[0].dot(around) / inertia.x)
@@ -47,10 +48,10 @@ impl Chain {
             + axes[2] * (axes[2].dot(around) / inertia.z)
     }
 
-    /// Lets points bounce, and returns whether any did. It must be called after the step.
-    pub fn bounce(&mut self) -> bool {
+    /// Lets points bounce. It must be called after the step.
+    pub fn bounce(&mut self) {
         if !self.contacts.iter().any(Self::bounces) {
-            return false;
+            return;
         }
         let mut bounces = self.bouncing_points();
         for _ in 0..ROUNDS {
@@ -67,7 +68,6 @@ impl Chain {
                 point.total_ns = bounce.total_ns;
             }
         }
-        true
     }
 
     fn bouncing_points(&self) -> Vec<Bounce> {
@@ -83,7 +83,7 @@ impl Chain {
                 if is_held || contact.bounce <= 0.0 || !Self::bounces_at(contact, point) {
                     continue;
                 }
-                let lever = |part: usize, own: Vector| out_of(&self.state[part].axes(), own);
+                let lever = |part: usize, own: Vector| out_of(&self.block(part).axes, own);
                 bounces.push(Bounce {
                     part: contact.part,
                     front,

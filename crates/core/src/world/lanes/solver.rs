@@ -4,12 +4,16 @@ use fearless_simd::{Simd, dispatch};
 
 use super::VectorLevel;
 use super::chain::{Chain, LanesCommon};
-use super::contact::Touching;
 use super::contact_rows::WideContact;
 use super::joint_rows::WideJoint;
 use super::level::BASELINE;
 use super::part::{MOST_TURN_RAD, WidePart};
 use super::wide::Wide;
+use crate::world::engine::Touching;
+
+/// Number of snakes that are advanced side by side: as many as AVX has lanes, and twice as many as SSE2 and NEON have. On web pages, where
+/// the size of the code counts, it is the number of lanes of WebAssembly.
+pub const LANES: usize = if cfg!(target_arch = "wasm32") { 4 } else { 8 };
 
 /// Solver that steps up to `N` snakes side by side. It holds working memory only.
 #[derive(Debug, Clone)]
@@ -29,36 +33,35 @@ impl<const N: usize> LaneSolver<N> {
         Self { level, parts, joints, contacts, contacts_used: 0 }
     }
 
-    /// Advances up to `N` snakes by one step, without their bounces. All of them have the same [`LanesCommon`]. Snakes beyond `N` are not
-    /// advanced.
-    pub fn advance(&mut self, chains: &mut [&mut Chain]) {
-        let used = chains.len().min(N);
-        let chains = &mut chains[..used];
-        let Some(common) = chains.first().map(|chain| chain.common.clone()) else { return };
-        for chain in chains.iter_mut() {
+    /// Advances up to `N` snakes by one step, without their bounces. All of them have the same [`LanesCommon`].
+    pub fn advance(&mut self, chains: &mut [Option<&mut Chain>; N]) {
+        let Some(first) = chains.iter().position(Option::is_some) else { return };
+        for chain in chains.iter_mut().flatten() {
             chain.find_contacts();
         }
-        self.load(&common, chains);
+        let Some(common) = self.load(chains, first) else { return };
         // A single lane gains nothing from vector instructions.
         let level = if N == 1 { BASELINE } else { self.level.0 };
         dispatch!(level, simd => self.step(simd, &common));
         for (lane, chain) in chains.iter_mut().enumerate() {
+            let Some(chain) = chain else { continue };
             for (index, part) in self.parts.iter().enumerate() {
                 part.store(lane, chain, index);
             }
             for contact in &self.contacts[..self.contacts_used] {
                 contact.store(lane, chain);
             }
+            chain.read_touches();
         }
     }
 
-    /// Loads the snakes into the lanes. A lane without a snake gets a copy of the first one.
-    fn load(&mut self, common: &LanesCommon, chains: &[&mut Chain]) {
-        self.parts.resize(common.parts, WidePart::EMPTY);
-        self.joints.resize(common.joints.len(), WideJoint::EMPTY);
-        let of_lane = |lane: usize| chains.get(lane).unwrap_or(&chains[0]);
-        for lane in 0..N {
-            let chain = of_lane(lane);
+    /// Loads the snakes into the lanes, and returns what they have in common. A lane without a snake gets a copy of the first one.
+    fn load(&mut self, chains: &[Option<&mut Chain>; N], first: usize) -> Option<LanesCommon> {
+        let common = chains[first].as_ref()?.common();
+        self.parts.resize(common.parts, WidePart::default());
+        self.joints.resize(common.joints.len(), WideJoint::default());
+        for (lane, chain) in chains.iter().enumerate() {
+            let chain = chain.as_deref().or(chains[first].as_deref())?;
             for (index, part) in self.parts.iter_mut().enumerate() {
                 part.load(lane, chain, index);
             }
@@ -78,18 +81,20 @@ impl<const N: usize> LaneSolver<N> {
         for part in 0..common.parts {
             while self.load_contact(chains, &mut next, part, None) {}
         }
+        Some(common)
     }
 
     /// Loads the next contact of each snake, if it is between these bodies. Returns whether any snake has such a contact.
     fn load_contact(
         &mut self,
-        chains: &[&mut Chain],
+        chains: &[Option<&mut Chain>; N],
         next: &mut [usize; N],
         part: usize,
         other: Option<usize>,
     ) -> bool {
         let mut is_begun = false;
         for (lane, (chain, next)) in chains.iter().zip(next.iter_mut()).enumerate() {
+            let Some(chain) = chain else { continue };
             let Some(contact) = chain.contacts.get(*next) else { continue };
             let front = match contact.other {
                 Touching::Part(front) => Some(front),
@@ -101,7 +106,7 @@ impl<const N: usize> LaneSolver<N> {
             if !is_begun {
                 is_begun = true;
                 if self.contacts_used == self.contacts.len() {
-                    self.contacts.push(WideContact::EMPTY);
+                    self.contacts.push(WideContact::default());
                 }
                 self.contacts[self.contacts_used].begin(part, other);
                 self.contacts_used += 1;

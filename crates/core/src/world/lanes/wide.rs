@@ -8,14 +8,14 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-use crate::world::Vector;
+use crate::world::{Rotation, Vector};
 
 /// One number per lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wide<const N: usize>(pub [f32; N]);
 
 /// One vector per lane.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WideVector<const N: usize> {
     pub x: Wide<N>,
     pub y: Wide<N>,
@@ -23,7 +23,7 @@ pub(super) struct WideVector<const N: usize> {
 }
 
 /// One rotation per lane, as a unit quaternion.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WideRotation<const N: usize> {
     pub x: Wide<N>,
     pub y: Wide<N>,
@@ -32,7 +32,7 @@ pub(super) struct WideRotation<const N: usize> {
 }
 
 /// One symmetric matrix per lane: an inverse inertia in the world.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WideSymmetric<const N: usize> {
     xx: Wide<N>,
     xy: Wide<N>,
@@ -40,6 +40,13 @@ pub(super) struct WideSymmetric<const N: usize> {
     yy: Wide<N>,
     yz: Wide<N>,
     zz: Wide<N>,
+}
+
+impl<const N: usize> Default for Wide<N> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::ZERO
+    }
 }
 
 macro_rules! lane_by_lane {
@@ -251,8 +258,6 @@ impl<const N: usize> WideVector<N> {
 }
 
 impl<const N: usize> WideRotation<N> {
-    pub const IDENTITY: Self = Self { x: Wide::ZERO, y: Wide::ZERO, z: Wide::ZERO, w: Wide::ONE };
-
     /// Returns the axes x, y and z after the rotation.
     #[inline(always)]
     pub fn axes(self) -> [WideVector<N>; 3] {
@@ -284,6 +289,12 @@ impl<const N: usize> WideRotation<N> {
         self.y.0[lane] = y;
         self.z.0[lane] = z;
         self.w.0[lane] = w;
+    }
+
+    /// Returns the rotation of one lane.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Rotation {
+        Rotation::from_xyzw(self.x.0[lane], self.y.0[lane], self.z.0[lane], self.w.0[lane])
     }
 
     /// Returns the product of two rotations: `second` acts first, and this one after it.
@@ -329,15 +340,6 @@ impl<const N: usize> WideRotation<N> {
 }
 
 impl<const N: usize> WideSymmetric<N> {
-    pub const ZERO: Self = Self {
-        xx: Wide::ZERO,
-        xy: Wide::ZERO,
-        xz: Wide::ZERO,
-        yy: Wide::ZERO,
-        yz: Wide::ZERO,
-        zz: Wide::ZERO,
-    };
-
     /// Builds the matrix with these values along these axes.
     #[inline(always)]
     pub fn along(axes: &[WideVector<N>; 3], values: WideVector<N>) -> Self {

@@ -1,9 +1,9 @@
 //! Updates the energy balance of a world after each step, and reports its result.
 
-use rapier3d::prelude::*;
-
 use super::Simulation;
-use crate::world::energy::{EnergyBalance, EnergyLost, LimbTurn};
+use crate::world::energy::{EnergyBalance, EnergyLost};
+use crate::world::turning::{product, turned};
+use crate::world::{Rotation, Vector};
 
 impl Simulation {
     /// Returns the energy lost since the start.
@@ -30,45 +30,34 @@ impl Simulation {
         self.balance.start_j += self.mechanical_energy_j() - earlier.mechanical_energy_j();
     }
 
-    /// Stores the rotations and angular velocities of the limbs before a step.
-    pub(super) fn read_turns(&mut self) {
-        self.turns_before.clear();
-        for &limb in &self.parts {
-            let body = &self.physics.bodies[limb];
-            self.turns_before.push(LimbTurn { rotation: *body.rotation(), rate: body.angvel() });
-        }
-    }
-
-    /// Adds a step to the balance, given the limbs' rotations before it ([`Self::read_turns`]). It must be called right after the engine's
+    /// Adds a step to the balance, given the parts before it. It must be called right after the engine's
     /// step, because bounces, air and damping surfaces change the angular velocities afterwards.
     ///
     /// Angular velocities change a lot within one step where a joint reaches its stop. The integrals therefore use the angular velocities
     /// at both ends of the step and the angle through which each limb has turned.
     pub(super) fn add_to_balance(&mut self) {
-        let step_s = self.physics.integration_parameters.dt;
-        let substep_s = self.substep_s();
+        let step_s = self.plan.physics.step_s();
+        let substep_s = self.plan.physics.substep_s();
         let mut work_j = 0.0;
-        let mut turns = Vec::with_capacity(self.parts.len());
-        for ((&limb, torque), before) in
-            self.parts.iter().zip(&self.torques_in_world).zip(&self.turns_before)
+        self.rates.clear();
+        for ((part, torque), before) in
+            self.engine.parts().iter().zip(&self.torques_in_world).zip(&self.earlier)
         {
-            let body = &self.physics.bodies[limb];
-            let after = body.angvel();
-            let turned_rad =
-                rotation_vector(self.product(*body.rotation(), before.rotation.inverse()));
+            let after = part.angular;
+            let turned_rad = rotation_vector(product(part.turn, before.turn.inverse()));
             // The engine turns a limb by its angular velocity at the end of each substep, but the work of a torque depends on the mean of
             // the angular velocities at both ends.
-            let mean = turned_rad / step_s - (after - before.rate) * (substep_s / (2.0 * step_s));
+            let mean =
+                turned_rad / step_s - (after - before.angular) * (substep_s / (2.0 * step_s));
             work_j += torque.dot(mean) * step_s;
-            turns.push([before.rate, mean, after]);
+            self.rates.push([before.angular, mean, after]);
         }
         let mut joints_j = 0.0;
-        for joint in &self.body.joints {
-            let to_joint =
-                self.joint_axes(joint, self.turns_before[joint.parent].rotation).inverse();
-            let [first, mean, last] = std::array::from_fn(|moment| {
-                self.turned(to_joint, turns[joint.child][moment] - turns[joint.parent][moment])
-            });
+        for joint in &self.plan.body.joints {
+            let to_joint = joint.axes(self.earlier[joint.parent].turn).inverse();
+            let [of_parent, of_child] = [joint.parent, joint.child].map(|part| self.rates[part]);
+            let [first, mean, last] =
+                [0, 1, 2].map(|moment| turned(to_joint, of_child[moment] - of_parent[moment]));
             let squares = square_over_step(first.x, mean.x, last.x)
                 + square_over_step(first.y, mean.y, last.y);
             joints_j += joint.damping_nms_per_rad * squares * step_s;
@@ -80,26 +69,23 @@ impl Simulation {
     /// Returns the kinetic and potential energy of all parts, including the springs of soft limbs, in J. The potential energy is 0 at z =
     /// 0.
     pub(super) fn mechanical_energy_j(&self) -> f64 {
-        let substep_s = self.substep_s();
-        if self.lanes.is_some() {
-            let parts = 0..self.parts.len();
-            let energies_j = parts.map(|part| self.energy_in_lanes_j(part, substep_s));
-            return energies_j.sum::<f64>() + self.springs_j();
-        }
-        let bodies = self.parts.iter().map(|&limb| &self.physics.bodies[limb]);
-        let energies_j = bodies.map(|body| {
+        let half_substep_s = self.plan.physics.substep_s() / 2.0;
+        let parts = self.parts().iter().zip(&self.plan.body.parts).zip(&self.inertias_kg_m2);
+        let energies_j = parts.map(|((part, plan), inertia)| {
+            let kinetic_j = part.kinetic_energy_j(plan.mass_kg(), *inertia);
             // The engine's positions are half a substep ahead of its velocities.
-            let height_j = body.gravitational_potential_energy(substep_s, self.physics.gravity);
-            f64::from(body.kinetic_energy()) + f64::from(height_j)
+            let at = part.at - part.linear * half_substep_s;
+            let weight_n = self.plan.physics.gravity() * plan.mass_kg();
+            f64::from(kinetic_j) - f64::from(weight_n.dot(at))
         });
         energies_j.sum::<f64>() + self.springs_j()
     }
 
     /// Returns the energy in the springs of soft limbs, in J: the sum of `k θ² / 2` about each axis.
     fn springs_j(&self) -> f64 {
-        let turn = |part: usize| *self.physics.bodies[self.parts[part]].rotation();
-        let energies_j = self.body.springs.iter().map(|spring| {
-            let between = self.product(turn(spring.parent).inverse(), turn(spring.child));
+        let turn = |part: usize| self.parts()[part].turn;
+        let energies_j = self.plan.body.springs.iter().map(|spring| {
+            let between = product(turn(spring.parent).inverse(), turn(spring.child));
             let sines = [between.x, between.y, between.z].into_iter();
             let of_axes = sines.zip(spring.stiffness_nm_per_rad).map(|(sine, stiffness)| {
                 let angle_rad = 2.0 * f64::from(libm::asinf(sine.clamp(-1.0, 1.0)));

@@ -1,7 +1,8 @@
 //! Checks the state after a step against the limits of the trial.
 
 use super::Simulation;
-use crate::world::{Disqualification, Effort, Mount, Vector};
+use crate::world::turning::turned;
+use crate::world::{Disqualification, Effort, Mount, Vector, WorldPlan};
 
 /// Height below which a part has fallen through the ground, in metres, because a contact failed.
 const LOWEST_Z_M: f32 = -2.0;
@@ -9,60 +10,53 @@ const LOWEST_Z_M: f32 = -2.0;
 impl Simulation {
     /// Returns half the length of a part, as a vector in the world from its centre to its front face, in metres.
     fn centre_to_front(&self, part: usize) -> Vector {
-        let half_length = Vector::new(0.0, self.body.parts[part].length_m / 2.0, 0.0);
-        self.turned(*self.physics.bodies[self.parts[part]].rotation(), half_length)
+        let half_length = Vector::new(0.0, self.body().parts[part].length_m / 2.0, 0.0);
+        turned(self.parts()[part].turn, half_length)
     }
 
     /// Returns the squared distance between the two anchors of a joint or a spring, in m².
     fn drift_squared(&self, [parent, child]: [usize; 2], mount: Option<Mount>) -> f32 {
-        let centre = |part: usize| self.physics.bodies[self.parts[part]].translation();
+        let [front, rear] = [parent, child].map(|part| &self.parts()[part]);
         let on_parent = match mount {
-            Some(mount) => {
-                let turn = *self.physics.bodies[self.parts[parent]].rotation();
-                centre(parent) + self.turned(turn, mount.at_m)
-            }
-            None => centre(parent) - self.centre_to_front(parent),
+            Some(mount) => front.at + turned(front.turn, mount.at_m),
+            None => front.at - self.centre_to_front(parent),
         };
-        let child_front = centre(child) + self.centre_to_front(child);
-        on_parent.distance_squared(child_front)
+        on_parent.distance_squared(rear.at + self.centre_to_front(child))
     }
 
     /// Checks the state after a step against the [`HealthLimits`] and returns the speeds and distances of this state.
     pub(super) fn check_health(&self) -> Result<Effort, Disqualification> {
         let mut seen = Effort::default();
-        // Rapier rolls back a body with a non-finite state, and reports the body in its quarantine.
-        if !self.physics.quarantine().is_empty() {
+        if self.engine.has_failed() {
             return Err(Disqualification::NotFinite);
         }
-        let speed_limit_squared = self.health.speed_m_s * self.health.speed_m_s;
-        for (index, &part) in self.parts.iter().enumerate() {
-            let body = &self.physics.bodies[part];
-            let (centre, speed_squared) = (body.translation(), body.linvel().length_squared());
-            // In worlds of rapier, rapier itself checks rotations and angular velocities.
-            let turns =
-                self.lanes.is_none() || (body.rotation().is_finite() && body.angvel().is_finite());
+        let WorldPlan { body, health, .. } = &self.plan;
+        let speed_limit_squared = health.speed_m_s * health.speed_m_s;
+        for (index, part) in self.parts().iter().enumerate() {
+            let (centre, speed_squared) = (part.at, part.linear.length_squared());
+            let turns = part.turn.is_finite() && part.angular.is_finite();
             if !(centre.is_finite() && speed_squared.is_finite() && turns) {
                 return Err(Disqualification::NotFinite);
             }
             if speed_squared > speed_limit_squared {
                 return Err(Disqualification::TooFast);
             }
-            if centre.x.abs() > self.health.arena_half_width_m
-                || centre.y < -self.health.arena_back_m
+            if centre.x.abs() > health.arena_half_width_m
+                || centre.y < -health.arena_back_m
                 || centre.y > self.arena_front_y_m
                 || centre.z < LOWEST_Z_M
             {
                 return Err(Disqualification::LeftArena);
             }
             // The order of these checks decides which reason is reported, so it is part of the result of a run.
-            let joints = self.body.joints.iter();
+            let joints = body.joints.iter();
             let joints = joints.map(|of| ([of.parent, of.child], of.mount, of.gap_scale));
-            let springs = self.body.springs.iter();
+            let springs = body.springs.iter();
             let springs = springs.map(|of| ([of.parent, of.child], None, of.gap_scale));
             let to_parents = joints.chain(springs).filter(|([_, child], ..)| *child == index);
             let mut drift_squared = 0.0_f32;
             for (ends, mount, gap_scale) in to_parents {
-                let limit_m = self.health.joint_drift_m * gap_scale;
+                let limit_m = health.joint_drift_m * gap_scale;
                 let of_joint = self.drift_squared(ends, mount);
                 if of_joint > limit_m * limit_m {
                     return Err(Disqualification::JointBroke);

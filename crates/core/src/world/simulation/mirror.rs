@@ -1,8 +1,8 @@
 //! A world that displays what another engine computes.
 
-use rapier3d::prelude::*;
-
 use super::Simulation;
+use crate::world::engine::{PartState, Touch};
+use crate::world::{Pose, Vector};
 
 /// The state of a part in another engine.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,20 +21,18 @@ impl Simulation {
     /// Copies the state of the parts from another engine, head first. From then on poses, joints and senses are those of the other engine,
     /// and this world must not be stepped any more.
     pub fn mirror(&mut self, limbs: &[LimbState]) {
-        for (&limb, state) in self.parts.iter().zip(limbs) {
-            let body = &mut self.physics.bodies[limb];
-            body.set_position(state.pose, false);
-            body.set_linvel(state.velocity_m_s, false);
-            body.set_angvel(state.angular_velocity_rad_s, false);
-        }
-        self.mirrored = limbs.iter().map(|state| state.contact_n).collect();
-    }
-
-    /// Returns whether a part touches the ground or the stairs, and their force on the part, in N.
-    pub(super) fn sensed_contact(&self, part: usize) -> (bool, Vector) {
-        match self.mirrored.get(part) {
-            Some(force_n) => (force_n.is_some(), force_n.unwrap_or(Vector::ZERO)),
-            None => self.contact_force(part),
+        for (part, state) in self.engine.parts_mut().iter_mut().zip(limbs) {
+            let touch = Touch {
+                ground: state.contact_n.is_some(),
+                force_n: state.contact_n.unwrap_or(Vector::ZERO),
+                ..Touch::default()
+            };
+            *part = PartState {
+                linear: state.velocity_m_s,
+                angular: state.angular_velocity_rad_s,
+                touch,
+                ..PartState::at_rest(state.pose)
+            };
         }
     }
 }
@@ -65,8 +63,8 @@ mod tests {
                     let limbs = world.poses().zip(world.velocities()).enumerate();
                     let states =
                         limbs.map(|(limb, (pose, [velocity_m_s, angular_velocity_rad_s]))| {
-                            let (touches, force_n) = world.sensed_contact(limb);
-                            let contact_n = touches.then_some(force_n);
+                            let touch = world.parts()[limb].touch;
+                            let contact_n = touch.any().then_some(touch.force_n);
                             LimbState { pose, velocity_m_s, angular_velocity_rad_s, contact_n }
                         });
                     mirror.mirror(&states.collect::<Vec<_>>());

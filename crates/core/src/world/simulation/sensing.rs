@@ -2,12 +2,9 @@
 
 use std::ops::Range;
 
-use rapier3d::prelude::*;
-
 use super::Simulation;
-use super::patches::solved_points;
-use crate::world::contact::other_collider;
-use crate::world::lanes::Touching;
+use crate::world::turning::turned;
+use crate::world::{Rotation, Vector};
 
 /// The senses of one limb, in units of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -43,14 +40,14 @@ pub struct SnakeReading {
 impl Simulation {
     /// Returns the weight of the snake, in N.
     pub fn weight_n(&self) -> f32 {
-        self.contacts.snake_kg * self.physics.gravity.z.abs()
+        self.body().mass_kg() * self.plan.physics.gravity_m_s2
     }
 
     /// Reads the senses of all limbs, head first, into a buffer that is reused.
     pub fn read_limbs(&self, readings: &mut Vec<LimbReading>) {
         readings.clear();
         let mut first = 0;
-        for limb in self.body.parts.chunk_by(|front, rear| front.limb == rear.limb) {
+        for limb in self.body().parts.chunk_by(|front, rear| front.limb == rear.limb) {
             let parts = first..first + limb.len();
             first = parts.end;
             readings.push(if limb.len() == 1 {
@@ -68,7 +65,7 @@ impl Simulation {
             parts.clone().map(|part| self.lowest_z_m(part)).fold(f32::INFINITY, f32::min);
         let count = parts.len() as f32;
         let middle = parts.start + parts.len() / 2;
-        let middle_m = self.physics.bodies[self.parts[middle]].translation();
+        let middle_m = self.parts()[middle].at;
         let front = self.read_part(parts.start);
         let raised_m = self.lowest_z_m(parts.start) - lowest_z_m;
         let mut limb = LimbReading {
@@ -88,101 +85,49 @@ impl Simulation {
 
     /// Returns the height of the lowest corner of a part, in metres.
     fn lowest_z_m(&self, part: usize) -> f32 {
-        let body = &self.physics.bodies[self.parts[part]];
-        let axes = self.axes(*body.rotation());
-        self.lowest_z_of_m(part, body.translation(), axes)
+        let state = &self.parts()[part];
+        self.lowest_z_of_m(part, state.at, axes(state.turn))
     }
 
     /// Returns the height of the lowest corner of a part with this centre and these axes, in metres.
     fn lowest_z_of_m(&self, part: usize, centre: Vector, axes: [Vector; 3]) -> f32 {
-        let half_m = self.body.parts[part].size_m().map(|size_m| size_m / 2.0);
+        let half_m = self.body().parts[part].size_m().map(|size_m| size_m / 2.0);
         let reach_m = axes.into_iter().zip(half_m);
         centre.z - reach_m.map(|(axis, half)| axis.z.abs() * half).sum::<f32>()
     }
 
-    /// Returns the axes of a body with this rotation, as unit vectors in the world: right, forward, up.
-    fn axes(&self, turn: Rotation) -> [Vector; 3] {
-        [Vector::X, Vector::Y, Vector::Z].map(|axis| self.turned(turn, axis))
-    }
-
     /// Returns the senses of the snake as a whole.
     pub fn read_snake(&self) -> SnakeReading {
-        let head = &self.physics.bodies[self.parts[0]];
-        let middle = &self.physics.bodies[self.parts[self.body.middle_part]];
-        let velocity = middle.linvel();
+        let (head, middle) = (&self.parts()[0], &self.parts()[self.body().middle_part]);
         SnakeReading {
-            yaw: self.turned(*head.rotation(), Vector::Y).x,
-            velocity_m_s: [velocity.y, velocity.z],
-            aside: middle.translation().x / self.profile.half_width_m(),
+            yaw: turned(head.turn, Vector::Y).x,
+            velocity_m_s: [middle.linear.y, middle.linear.z],
+            aside: middle.at.x / self.profile.half_width_m(),
         }
     }
 
     fn read_part(&self, part: usize) -> LimbReading {
-        let body = &self.physics.bodies[self.parts[part]];
-        let (centre, axes) = (body.translation(), self.axes(*body.rotation()));
+        let state = &self.parts()[part];
+        let (centre, axes) = (state.at, axes(state.turn));
         let [right, forward, _] = axes;
         let lowest_z_m = self.lowest_z_of_m(part, centre, axes);
-        let front = centre + forward * (self.body.parts[part].length_m / 2.0);
+        let front = centre + forward * (self.body().parts[part].length_m / 2.0);
         let next = self.profile.next_step(front.x, front.y);
-        let (is_touching, force_n) = self.sensed_contact(part);
         LimbReading {
-            is_touching,
-            load_n: force_n.z.max(0.0),
-            blocked_n: (-force_n.dot(forward)).max(0.0),
+            is_touching: state.touch.any(),
+            load_n: state.touch.force_n.z.max(0.0),
+            blocked_n: (-state.touch.force_n.dot(forward)).max(0.0),
             pitch: forward.z,
             roll: right.z,
             next_step: next.map(|next| [next.gap_m, next.top_z_m - lowest_z_m]),
             clearance_m: lowest_z_m - self.profile.surface_z_m(centre.x, centre.y),
         }
     }
+}
 
-    /// Returns whether a part touches ground or stairs, and the force of these contacts on the part in the last substep, in N: the sum of
-    /// [`Self::contact_forces`], without a list of them.
-    pub(super) fn contact_force(&self, part: usize) -> (bool, Vector) {
-        if self.lanes.is_some() {
-            self.contact_force_in_lanes(part)
-        } else {
-            self.contact_force_in_rapier(part)
-        }
-    }
-
-    fn contact_force_in_lanes(&self, part: usize) -> (bool, Vector) {
-        let (mut is_touching, mut impulse) = (false, Vector::ZERO);
-        let contacts = self.lanes_contacts().iter().filter(|contact| contact.part == part);
-        for contact in contacts.filter(|contact| !matches!(contact.other, Touching::Part(_))) {
-            is_touching = true;
-            let pressed_ns: f32 = contact.points().iter().map(|point| point.impulse_ns).sum();
-            if pressed_ns > 0.0 {
-                impulse += contact.normal * pressed_ns + contact.friction_ns;
-            }
-        }
-        (is_touching, impulse / self.substep_s())
-    }
-
-    fn contact_force_in_rapier(&self, part: usize) -> (bool, Vector) {
-        let (mut is_touching, mut impulse) = (false, Vector::ZERO);
-        let collider = self.physics.bodies[self.parts[part]].colliders()[0];
-        for pair in self.physics.narrow_phase.contact_pairs_with(collider) {
-            if !self.is_world(other_collider(pair, collider)) {
-                continue;
-            }
-            is_touching |= pair.has_any_active_contact();
-            let side = if pair.collider1 == collider { -1.0 } else { 1.0 };
-            for manifold in pair.solver_manifolds() {
-                // All points of a manifold share one friction impulse.
-                let mut friction = None;
-                for point in solved_points(manifold) {
-                    if point.data.warmstart_impulse > 0.0 {
-                        friction = Some(point.data.warmstart_tangent_world);
-                        let normal = manifold.data.normal * point.data.warmstart_impulse;
-                        impulse += normal * side;
-                    }
-                }
-                impulse -= friction.unwrap_or(Vector::ZERO) * side;
-            }
-        }
-        (is_touching, impulse / self.substep_s())
-    }
+/// Returns the axes of a part with this rotation, as unit vectors in the world: right, forward, up.
+fn axes(turn: Rotation) -> [Vector; 3] {
+    [Vector::X, Vector::Y, Vector::Z].map(|axis| turned(turn, axis))
 }
 
 #[cfg(test)]
@@ -230,11 +175,9 @@ mod tests {
             plan.physics.gravity_m_s2 = 0.0;
             let mut world = Simulation::new(&plan);
             let turn = Rotation::from_xyzw(libm::sinf(0.2), 0.0, 0.0, libm::cosf(0.2));
-            for part in world.parts.clone() {
-                let body = &mut world.physics_mut().bodies[part];
-                let at = turn * body.translation() + Vector::new(0.0, 0.0, 20.0);
-                body.set_position(Pose::from_parts(at, turn), true);
-            }
+            world.change_parts(|(_, part)| {
+                (part.at, part.turn) = (turn * part.at + Vector::new(0.0, 0.0, 20.0), turn);
+            });
             let mut readings = Vec::new();
             world.read_limbs(&mut readings);
             readings

@@ -20,11 +20,11 @@ impl Simulation {
     ///
     /// Returns an error if the body breaks a limit, shifts along the stairs, or does not come to rest in time.
     pub fn settle(&mut self) -> Result<(), Disqualification> {
-        let step_s = self.physics.integration_parameters.dt;
+        let step_s = self.plan.physics.step_s();
         let [longest, rest] =
             [LONGEST_S, REST_S].map(|time_s| libm::roundf(time_s / step_s) as u32);
         let start_y_m = self.centre_of_mass().0.y;
-        let torques = vec![JointTorque::default(); self.body.joints.len()];
+        let torques = vec![JointTorque::default(); self.body().joints.len()];
         let (mut since, mut rested) = (self.places(), 0);
         for _ in 0..longest {
             self.apply(&torques);
@@ -57,7 +57,7 @@ impl Simulation {
     /// Returns the position of the centre of mass in metres, and its velocity in m/s.
     fn centre_of_mass(&self) -> (Vector, Vector) {
         let (mut place, mut velocity, mut mass_kg) = (Vector::ZERO, Vector::ZERO, 0.0);
-        let limbs = self.body.parts.iter().zip(self.poses().zip(self.velocities()));
+        let limbs = self.body().parts.iter().zip(self.poses().zip(self.velocities()));
         for (limb, (pose, [linear, _])) in limbs {
             place += pose.translation * limb.mass_kg();
             velocity += linear * limb.mass_kg();

@@ -1,7 +1,5 @@
 //! Applies a shove to a limb of a running world.
 
-use rapier3d::prelude::RigidBody;
-
 use super::Simulation;
 use crate::world::Shove;
 
@@ -9,21 +7,13 @@ impl Simulation {
     /// Shoves a limb now. If there is no such limb, nothing happens. The energy that the shove adds or takes counts neither as gained nor
     /// as lost in the energy balance.
     pub fn shove(&mut self, shove: &Shove) {
-        for &part in &self.parts[self.body.parts_of(shove.limb)] {
-            let is_in_lanes = self.lanes.is_some();
-            let body = &mut self.physics.bodies[part];
-            // The energy that rapier computes for a body is not the same on every processor.
-            let energy_j = |of: &RigidBody| {
-                let velocity = of.linvel();
-                if is_in_lanes {
-                    of.mass() * velocity.dot(velocity) / 2.0
-                } else {
-                    of.kinetic_energy()
-                }
-            };
-            let before_j = energy_j(body);
-            body.set_linvel(body.linvel() + shove.change_m_s, true);
-            self.balance.start_j += f64::from(energy_j(body) - before_j);
+        for part in self.plan.body.parts_of(shove.limb) {
+            let mass_kg = self.plan.body.parts[part].mass_kg();
+            let velocity = &mut self.engine.parts_mut()[part].linear;
+            let before_j = mass_kg * velocity.length_squared() / 2.0;
+            *velocity += shove.change_m_s;
+            let after_j = mass_kg * velocity.length_squared() / 2.0;
+            self.balance.start_j += f64::from(after_j - before_j);
         }
     }
 }

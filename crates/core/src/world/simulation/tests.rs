@@ -35,7 +35,6 @@ macro_rules! in_both_engines {
 }
 
 mod energy;
-mod marks;
 mod newborns;
 mod observe;
 mod patches;
@@ -46,7 +45,7 @@ mod soft;
 mod surface;
 mod trees;
 
-use super::super::{JointPlan, PartPlan, PhysicsSettings, Skin, Stairs, Surface};
+use super::super::{HealthLimits, JointPlan, PhysicsSettings, Skin, Stairs, Surface};
 use super::*;
 
 /// Returns a snake of `limbs` blocks without damping, in the world of the report.
@@ -92,18 +91,32 @@ fn plan(limbs: usize) -> WorldPlan {
 fn weightless(limbs: usize) -> (WorldPlan, Simulation) {
     let mut plan = plan(limbs);
     plan.physics.gravity_m_s2 = 0.0;
-    let mut simulation = Simulation::new(&plan);
-    for limb in simulation.parts.clone() {
-        let body = &mut simulation.physics_mut().bodies[limb];
-        let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
-        body.set_translation(above, true);
-    }
+    let simulation = lifted(&plan);
     (plan, simulation)
+}
+
+/// Returns the world of a plan with all parts 30 m higher.
+fn lifted(plan: &WorldPlan) -> Simulation {
+    let mut simulation = Simulation::new(plan);
+    simulation.change_parts(|(_, part)| part.at.z += 30.0);
+    simulation
+}
+
+/// Returns the kinetic energy of all parts, in J.
+fn kinetic_j(simulation: &Simulation) -> f32 {
+    let parts = simulation.parts().iter().zip(&simulation.body().parts);
+    parts.map(|(part, plan)| part.kinetic_energy_j(plan.mass_kg(), plan.inertia_kg_m2())).sum()
+}
+
+/// Returns the momentum of all parts, in kg m/s.
+fn momentum(simulation: &Simulation) -> Vector {
+    let parts = simulation.parts().iter().zip(&simulation.body().parts);
+    parts.map(|(part, plan)| part.linear * plan.mass_kg()).sum()
 }
 
 /// Returns the bend, the twist and the locked angle of a joint, in radians, by the formulas of [`universal_joint`].
 fn angles(simulation: &Simulation, joint: usize) -> [f32; 3] {
-    let rotation = |limb: usize| *simulation.physics.bodies[simulation.parts[limb]].rotation();
+    let rotation = |part: usize| simulation.parts()[part].turn;
     let relative = rotation(joint).inverse() * rotation(joint + 1);
     [relative.x, relative.y, relative.z].map(|part| 2.0 * libm::atanf(part / relative.w))
 }
@@ -118,11 +131,14 @@ fn the_straight_snake_starts_at_the_position_of_table_1() {
     assert!((centres[0].y - centres[4].y - 8.0).abs() < 1e-5);
 }
 
-in_both_engines!(the_density_gives_the_mass);
-fn the_density_gives_the_mass() {
-    let simulation = Simulation::new(&plan(2));
-    let mass_kg = simulation.physics.bodies[simulation.parts[0]].mass();
+#[test]
+fn both_engines_have_the_mass_and_the_inertia_of_the_plan() {
+    let (plan, rapier) = (plan(2), RapierWorld::new(&plan(2)));
+    let (mass_kg, inertia) = (plan.body.parts[0].mass_kg(), plan.body.parts[0].inertia_kg_m2());
+    let body = &rapier.physics().bodies[rapier.bodies()[0]];
+    let in_rapier = body.mass_properties().local_mprops.principal_inertia();
     assert!((mass_kg - 5.0).abs() < 1e-4, "{mass_kg} kg");
+    assert!((mass_kg - body.mass()).abs() < 1e-4 && inertia.distance(in_rapier) < 1e-4);
 }
 
 in_both_engines!(joint_torques_do_not_accelerate_the_snake_as_a_whole);
@@ -134,9 +150,8 @@ fn joint_torques_do_not_accelerate_the_snake_as_a_whole() {
     for _ in 0..30 {
         simulation.step(&torques).expect("healthy");
     }
-    let bodies = simulation.parts.iter().map(|&limb| &simulation.physics.bodies[limb]);
-    let momentum: Vector = bodies.clone().map(|body| body.linvel() * body.mass()).sum();
-    let fastest = bodies.map(|body| body.linvel().length()).fold(0.0, f32::max);
+    let momentum = momentum(&simulation);
+    let fastest = simulation.speeds_m_s().fold(0.0, f32::max);
     assert!(fastest > 0.1, "it moves: {fastest} m/s");
     assert!(momentum.length() < 0.01, "but not away: {momentum} kg m/s");
 }
@@ -199,20 +214,14 @@ fn joint_damping_slows_the_joint_as_its_formula_says() {
         let (mut plan, _) = weightless(2);
         plan.body.joints[0].damping_nms_per_rad = damping_nms_per_rad;
         plan.physics.steps_per_s = 1000;
-        let mut simulation = Simulation::new(&plan);
-        let [front, rear] = [simulation.parts[0], simulation.parts[1]];
-        let spin = Vector::new(0.0, 1.0, 0.0);
-        simulation.physics_mut().bodies[front].set_angvel(spin, true);
-        simulation.physics_mut().bodies[rear].set_angvel(-spin, true);
-        for limb in [front, rear] {
-            let body = &mut simulation.physics_mut().bodies[limb];
-            let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
-            body.set_translation(above, true);
-        }
+        let mut simulation = lifted(&plan);
+        simulation.change_parts(|(index, part)| {
+            part.angular.y = if index == 0 { 1.0 } else { -1.0 };
+        });
         for _ in 0..100 {
             simulation.step(&[JointTorque::default()]).expect("healthy");
         }
-        simulation.physics.bodies[front].angvel().y
+        simulation.parts()[0].angular.y
     };
     // For twist, the joint rate is 2 w and the torque on each limb c * 2 w, so w decays with exp(-2 c t / I), where I = m (width² +
     // height²) / 12 = 5/6 kg m².
@@ -230,17 +239,13 @@ fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
         plan.body.joints[0].cfm_m_s_per_n = cfm_m_s_per_n;
         plan.health.joint_drift_m = 10.0;
         let mut simulation = Simulation::new(&plan);
-        let [front, rear] = [simulation.parts[0], simulation.parts[1]];
+        simulation.change_parts(|(index, part)| {
+            part.force_n.y = if index == 0 { pull_n } else { -pull_n };
+        });
         for _ in 0..1200 {
-            for (limb, sign) in [(front, 1.0), (rear, -1.0)] {
-                simulation.physics.bodies[limb].reset_forces(true);
-                let pull = Vector::new(0.0, pull_n * sign, 0.0);
-                simulation.physics_mut().bodies[limb].add_force(pull, true);
-            }
             simulation.step(&[JointTorque::default()]).expect("healthy");
         }
-        let centre = |limb: RigidBodyHandle| simulation.physics.bodies[limb].translation().y;
-        centre(front) - centre(rear) - 2.0
+        simulation.parts()[0].at.y - simulation.parts()[1].at.y - 2.0
     };
     assert!(stretch_m(0.0, 50.0).abs() < 0.001, "rigid");
     for (cfm_m_s_per_n, pull_n) in [(0.01, 50.0), (0.01, 100.0), (0.03, 50.0)] {
@@ -257,15 +262,11 @@ fn the_energy_spent_by_the_joints_is_the_energy_gained_by_the_limbs() {
         [JointTorque { bend_nm: 1.0, twist_nm: 0.0 }, JointTorque { bend_nm: 0.0, twist_nm: 0.25 }]
     {
         let (_, mut simulation) = weightless(2);
-        let gained = |simulation: &Simulation| {
-            let bodies = simulation.parts.iter().map(|&limb| &simulation.physics.bodies[limb]);
-            bodies.map(RigidBody::kinetic_energy).sum::<f32>()
-        };
         assert_eq!(simulation.effort(), Effort::default());
         for _ in 0..40 {
             simulation.step(&[torque]).expect("healthy");
         }
-        let (spent, gained) = (simulation.effort().energy_j, gained(&simulation));
+        let (spent, gained) = (simulation.effort().energy_j, kinetic_j(&simulation));
         assert!(gained > 0.01 && (spent / gained - 1.0).abs() < 0.01, "{spent} J for {gained} J");
         // Held back by the opposite torque, the joints spend as much energy again.
         let back = JointTorque { bend_nm: -torque.bend_nm, twist_nm: -torque.twist_nm };
@@ -298,9 +299,7 @@ fn a_turned_start_turns_and_moves_the_whole_snake() {
 in_both_engines!(the_effort_of_a_thrown_snake_holds_its_maxima);
 fn the_effort_of_a_thrown_snake_holds_its_maxima() {
     let (_, mut simulation) = weightless(3);
-    for limb in simulation.parts.clone() {
-        simulation.physics_mut().bodies[limb].set_linvel(Vector::new(3.0, 0.0, 4.0), true);
-    }
+    simulation.change_parts(|(_, part)| part.linear = Vector::new(3.0, 0.0, 4.0));
     for _ in 0..60 {
         simulation.step(&[JointTorque::default(); 2]).expect("healthy");
     }
@@ -312,14 +311,16 @@ fn the_effort_of_a_thrown_snake_holds_its_maxima() {
 in_both_engines!(a_free_limb_swings_with_the_period_of_the_physical_pendulum);
 fn a_free_limb_swings_with_the_period_of_the_physical_pendulum() {
     let (plan, mut simulation) = weightless(2);
-    let [front, rear] = [simulation.parts[0], simulation.parts[1]];
-    simulation.physics_mut().bodies[front].set_body_type(RigidBodyType::Fixed, true);
-    // Gravity points backwards along the snake, so that the straight snake is at rest.
-    simulation.physics.gravity = Vector::new(0.0, -9.81, 0.0);
-    let speed = 0.2;
-    simulation.physics_mut().bodies[rear].set_angvel(Vector::new(speed, 0.0, 0.0), true);
-    let lever = 1.0;
-    simulation.physics_mut().bodies[rear].set_linvel(Vector::new(0.0, 0.0, -speed * lever), true);
+    let (speed, lever, weight_n) = (0.2, 1.0, 9.81 * plan.body.parts[1].mass_kg());
+    simulation.change_parts(|(index, part)| {
+        part.is_held = index == 0;
+        if index == 1 {
+            // Its weight points backwards along the snake, so that the straight snake is at rest.
+            part.force_n.y = -weight_n;
+            part.angular.x = speed;
+            part.linear.z = -speed * lever;
+        }
+    });
     let mut crossings_s = Vec::new();
     let mut previous = 0.0;
     for step in 1..=1800 {
@@ -346,13 +347,8 @@ fn drift(limbs: usize) -> (f32, f32) {
     for joint in &mut plan.body.joints {
         (joint.bend_limit_rad, joint.twist_limit_rad) = (3.0, 3.0);
     }
-    let mut simulation = Simulation::new(&plan);
-    for limb in simulation.parts.clone() {
-        let body = &mut simulation.physics_mut().bodies[limb];
-        let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
-        body.set_translation(above, true);
-        body.set_linvel(Vector::new(0.4, 0.0, 0.0), true);
-    }
+    let mut simulation = lifted(&plan);
+    simulation.change_parts(|(_, part)| part.linear.x = 0.4);
     // The joints start the wave, so that the initial motion satisfies every joint.
     for step in 0..30 {
         let push = |joint: usize| JointTorque {
@@ -364,21 +360,12 @@ fn drift(limbs: usize) -> (f32, f32) {
     }
     let still = vec![JointTorque::default(); limbs - 1];
     simulation.step(&still).expect("healthy");
-    let bodies = |simulation: &Simulation| -> Vec<RigidBody> {
-        simulation.parts.iter().map(|&limb| simulation.physics.bodies[limb].clone()).collect()
-    };
-    let momentum = |simulation: &Simulation| -> Vector {
-        bodies(simulation).iter().map(|body| body.linvel() * body.mass()).sum()
-    };
-    let energy_j = |simulation: &Simulation| -> f32 {
-        bodies(simulation).iter().map(RigidBody::kinetic_energy).sum()
-    };
-    let (momentum_before, energy_before_j) = (momentum(&simulation), energy_j(&simulation));
+    let (momentum_before, energy_before_j) = (momentum(&simulation), kinetic_j(&simulation));
     (0..600).for_each(|_| simulation.step(&still).expect("healthy"));
     let is_free = |joint| angles(&simulation, joint).iter().all(|angle| angle.abs() < 2.9);
     assert!((0..limbs - 1).all(is_free), "a joint that hits its limit loses energy, as it should");
     let lost = (momentum(&simulation) - momentum_before).length();
-    (lost, energy_j(&simulation) / energy_before_j - 1.0)
+    (lost, kinetic_j(&simulation) / energy_before_j - 1.0)
 }
 
 in_both_engines!(a_snake_without_external_forces_keeps_its_momentum_and_energy);
@@ -395,17 +382,11 @@ fn a_fall_follows_the_gravity_of_the_settings() {
     let fallen_m = |gravity_m_s2| {
         let mut plan = plan(2);
         plan.physics.gravity_m_s2 = gravity_m_s2;
-        let mut simulation = Simulation::new(&plan);
-        let head = simulation.parts[0];
-        for limb in simulation.parts.clone() {
-            let body = &mut simulation.physics_mut().bodies[limb];
-            let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
-            body.set_translation(above, true);
-        }
+        let mut simulation = lifted(&plan);
         for _ in 0..60 {
             simulation.step(&[JointTorque::default()]).expect("healthy");
         }
-        30.5 - simulation.physics.bodies[head].translation().z
+        30.5 - simulation.parts()[0].at.z
     };
     for gravity in [1.62, 9.81] {
         let (fallen, expected) = (fallen_m(gravity), gravity / 2.0);
@@ -415,22 +396,19 @@ fn a_fall_follows_the_gravity_of_the_settings() {
 
 in_both_engines!(each_exceeded_health_limit_disqualifies);
 fn each_exceeded_health_limit_disqualifies() {
-    let broken_by = |speed_limit_m_s, break_it: fn(&mut RigidBody)| {
+    let broken_by = |speed_limit_m_s, break_it: fn(&mut PartState)| {
         let mut plan = plan(5);
         plan.health.speed_m_s = speed_limit_m_s;
         let mut simulation = Simulation::new(&plan);
-        let head = simulation.parts[0];
-        break_it(&mut simulation.physics_mut().bodies[head]);
+        break_it(&mut simulation.engine.parts_mut()[0]);
         let still = [JointTorque::default(); 4];
         (0..600).find_map(|_| simulation.step(&still).err())
     };
-    let poison = |body: &mut RigidBody| body.set_linvel(Vector::splat(f32::NAN), true);
+    let poison = |head: &mut PartState| head.linear = Vector::splat(f32::NAN);
     assert_eq!(broken_by(25.0, poison), Some(Disqualification::NotFinite));
-    let shoot = |body: &mut RigidBody| body.set_linvel(Vector::new(0.0, 0.0, 500.0), true);
+    let shoot = |head: &mut PartState| head.linear = Vector::new(0.0, 0.0, 500.0);
     assert_eq!(broken_by(25.0, shoot), Some(Disqualification::TooFast));
-    let tear = |body: &mut RigidBody| {
-        body.set_translation(body.translation() + Vector::new(0.0, 30.0, 10.0), true);
-    };
+    let tear = |head: &mut PartState| head.at += Vector::new(0.0, 30.0, 10.0);
     // Rapier pulls a torn joint together at once, at up to 400 m/s. With the default limit, the reason would be the speed.
     assert_eq!(broken_by(1000.0, tear), Some(Disqualification::JointBroke));
     assert_eq!(broken_by(25.0, |_| ()), None, "a snake that lies still is healthy");

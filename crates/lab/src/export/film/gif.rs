@@ -14,7 +14,7 @@ use crate::export::ExportError;
 use snakes_core::check::within;
 use snakes_core::save::{Picture, UnfinishedFile};
 
-pub use size::{ESTIMATED_BYTES, GifChoice, GifChoices};
+pub use size::{GifChoice, GifChoices, MOST_MB, most_estimated};
 
 /// Allowed frames per second. Browsers show a frame of less than 0.02 s for 0.1 s.
 pub const GIF_FPS: RangeInclusive<u32> = 1..=50;

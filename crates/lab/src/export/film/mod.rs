@@ -8,6 +8,6 @@ mod video;
 pub use film_file::FilmFile;
 pub use frame_folder::{FrameFolder, frame_folder_of};
 pub use gif::{
-    BegunGif, ESTIMATED_BYTES, GIF_FPS, GifChoice, GifChoices, GifFile, GifPalette, PAIRS,
+    BegunGif, GIF_FPS, GifChoice, GifChoices, GifFile, GifPalette, MOST_MB, PAIRS, most_estimated,
 };
 pub use video::{Video, check_video_size};

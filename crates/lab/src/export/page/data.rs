@@ -1,9 +1,8 @@
 //! The data of a page: recorded motion of each champion, and facts about it.
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
+use super::base85;
 use crate::export::motion::follow;
 use crate::export::source::{ExportSource, ExportedChampion};
 use crate::export::{ExportError, ExportProgress};
@@ -76,9 +75,9 @@ pub struct PageChampion {
     frames: usize,
     /// Length of one unit of the positions in `poses`, in metres.
     unit_m: f32,
-    /// Poses as base64, frame by frame and part by part: seven numbers of 16 bits each, the position and the rotation times 32,767.
+    /// Poses in [`base85`], frame by frame and part by part: seven numbers of 16 bits each, the position and the rotation times 32,767.
     poses: String,
-    /// Torques as base64, frame by frame and joint by joint: bend and twist as shares of `torque_unit_nm` times 32,767.
+    /// Torques in [`base85`], frame by frame and joint by joint: bend and twist as shares of `torque_unit_nm` times 32,767.
     torques: String,
     torque_unit_nm: f32,
     /// Number of steps of the stairs below the middle limb, frame by frame.
@@ -213,10 +212,10 @@ impl PageChampion {
     }
 }
 
-/// Packs numbers as base64: 16 bits each, the lower byte first.
+/// Packs numbers as [`base85`]: 16 bits each, the lower byte first.
 fn packed(numbers: impl Iterator<Item = f32>) -> String {
     let bytes: Vec<u8> = numbers.flat_map(|number| (number.round() as i16).to_le_bytes()).collect();
-    STANDARD.encode(bytes)
+    base85::encoded(&bytes)
 }
 
 /// Returns y and z of the edge of a step, in metres, and 1 if the step leads up or -1 if it leads down.
@@ -254,7 +253,7 @@ fn facts(exported: &ExportedChampion) -> Vec<(&'static str, String)> {
         (
             "Body",
             format!(
-                "{} limbs, {:.1} m long, {:.1} kg",
+                "{} blocks, {:.1} m long, {:.1} kg",
                 body.limbs(),
                 body.length_m(),
                 body.mass_kg()

@@ -68,7 +68,7 @@ impl StageParams<'_, '_> {
     }
 
     /// Returns the time from which a change is tried now, in simulated seconds, and the rollout of the original at that
-    /// time; `None` at the start.
+    /// time; `None` at the start, from which a change is also tried after the end of the trial and on the landing.
     fn moment(&self, history: &UndoHistory) -> (f64, Option<Rollout>) {
         let at_start = (0.0, None);
         let original = if *self.mode == StageMode::Race { self.selection.lane } else { 0 };
@@ -86,6 +86,10 @@ impl StageParams<'_, '_> {
         }
         // A genome whose simulation panics is tried from the start; the stage then reports the panic.
         let Ok(rollout) = caught(|| lane.rollout_at(step)) else { return at_start };
+        if rollout.is_on_landing() {
+            // The snake has climbed the stairs, so a change would have no effect that can be seen.
+            return at_start;
+        }
         (f64::from(step) * lane.step_s, Some(rollout))
     }
 

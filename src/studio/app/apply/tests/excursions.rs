@@ -17,8 +17,8 @@ type Seen = BTreeMap<&'static str, String>;
 
 fn seen(app: &mut App) -> Seen {
     let mut query = app.world_mut().query::<&Lane>();
-    let mut lanes: Vec<&Lane> = query.iter(app.world()).collect();
-    lanes.sort_by_key(|lane| lane.number);
+    let lanes = query.iter(app.world()).sort_by_key::<&Lane, _>(|lane| lane.number);
+    let lanes: Vec<&Lane> = lanes.collect();
     let world = app.world();
     let (playback, selection) = (world.resource::<Playback>(), world.resource::<Selection>());
     let labels = lanes.iter().map(|lane| lane.staged.label());
@@ -55,6 +55,8 @@ fn studio() -> App {
     let grid = made_up(ExamSuite::Stairs, &champion.trial);
     app.world_mut().resource_mut::<StairsExams>().keep(champion, vec![grid]);
     app.update();
+    send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
+    settle(&mut app);
     app
 }
 
@@ -102,7 +104,6 @@ fn differences(a: &Seen, b: &Seen) -> Vec<&'static str> {
 
 #[test]
 fn a1_every_excursion_within_every_other_returns_to_exactly_the_scene_before() {
-    let show = Command::Stage(StageCommand::ShowGeneration(Some(1)));
     for (kind, first, end_first) in excursions() {
         for (other_kind, second, end_second) in excursions() {
             if (kind, other_kind) == ("presenting", "presenting") {
@@ -110,8 +111,6 @@ fn a1_every_excursion_within_every_other_returns_to_exactly_the_scene_before() {
                 continue;
             }
             let mut app = studio();
-            send(&mut app, &show);
-            settle(&mut app);
             let home = seen(&mut app);
             enter(&mut app, &first);
             let entered = seen(&mut app);
@@ -150,8 +149,6 @@ fn commands_of_one_frame_that_enter_and_leave_excursions_leave_no_lanes_behind()
     for (kind, begin, leave) in excursions().into_iter().filter(|(kind, ..)| *kind != "exam") {
         let leave = if kind == "presenting" { end.clone() } else { leave };
         let mut app = studio();
-        send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
-        settle(&mut app);
         let home = seen(&mut app);
         app.world_mut().resource_mut::<UndoHistory>().is_settled = true;
         for command in [begin.clone(), leave.clone(), begin, leave.clone()] {
@@ -167,7 +164,6 @@ fn commands_of_one_frame_that_enter_and_leave_excursions_leave_no_lanes_behind()
 fn the_speed_that_was_set_within_an_excursion_stays_after_it() {
     for (kind, begin, end) in excursions() {
         let mut app = studio();
-        send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
         enter(&mut app, &begin);
         send(&mut app, &Command::Player(PlayerCommand::SetSpeed(0.25)));
         send(&mut app, &end);
@@ -178,8 +174,6 @@ fn the_speed_that_was_set_within_an_excursion_stays_after_it() {
 #[test]
 fn a5_a6_one_snake_of_a_crowd_keeps_its_moment_and_leads_back_to_the_crowd() {
     let mut app = studio();
-    send(&mut app, &Command::Stage(StageCommand::ShowGeneration(Some(1))));
-    settle(&mut app);
     let crowd = seen(&mut app);
     send(&mut app, &Command::Stage(StageCommand::Single));
     let alone = seen(&mut app);

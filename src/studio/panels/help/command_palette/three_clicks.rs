@@ -38,8 +38,8 @@ fn by_menus() -> Vec<Way> {
     let mut ways = Vec::new();
     for of in Menu::ALL {
         let recent = RecentFiles::default();
-        let mut bar = panel([900.0, 1200.0], move |ui, commands| {
-            menu(ui, situations()[0], &|_| None, &recent, ("", None), commands);
+        let mut bar = panel([900.0, 1200.0], move |ui| {
+            menu(ui, situations()[0], &|_| None, &recent, ("", None));
         });
         clicked(&mut bar, of.name());
         let drawn = actions().iter().filter(|action| shows(&bar, action.name));
@@ -68,8 +68,8 @@ fn by_search() -> Vec<Way> {
     let mut world = WorldPanel::default();
     let mut harness = Harness::builder().with_size(egui::vec2(400.0, 3000.0)).build_ui_state(
         |ui, label: &mut String| {
-            world.set_search(label);
-            world.ui(ui, &run, &history, &ReadLanes::default(), &mut Vec::new());
+            world.search.clone_from(label);
+            world.ui(ui, &run, &history, &ReadLanes::default());
         },
         String::new(),
     );
@@ -97,18 +97,13 @@ fn by_buttons() -> Vec<Way> {
     ways.extend(shown.map(|name| (name.to_owned(), vec!["Show", name])));
     ways.extend(PanelKind::INITIAL.iter().map(|kind| (kind.name().to_owned(), vec![kind.name()])));
     let (run, mut watch) = (prepared_run(), EvolutionPanel::default());
-    let mut watch = panel([400.0, 1200.0], |ui, commands| watch.ui(ui, &run, |_, _| (), commands));
+    let mut watch = panel([400.0, 1200.0], |ui| watch.ui(ui, &run, |_| ()));
     let champions = Command::Window(WindowCommand::OpenPanel(PanelKind::Champions));
     if clicked(&mut watch, "Champions").contains(&champions) {
         let clicks = vec![PanelKind::Run.name(), "Champions", "its row"];
         ways.push(("Show a generation's champion".to_owned(), clicks));
     }
     ways
-}
-
-/// Returns the name of a setting with its section, as in the palette.
-fn name_of(of: &ListedSetting) -> String {
-    format!("{} ({})", of.setting.label, of.section.title.to_lowercase())
 }
 
 #[test]
@@ -118,7 +113,7 @@ fn every_action_setting_and_view_is_at_most_three_clicks_away() {
     let all = [
         actions().iter().map(|action| action.name.to_owned()).collect(),
         every_setting().iter().map(name_of).collect(),
-        names(&PanelKind::ALL.map(PanelKind::name)),
+        PanelKind::IN_MENU.iter().map(|kind| kind.name().to_owned()).collect(),
         names(&CameraMode::ALL.map(CameraMode::name)),
         names(&Quality::ALL.map(Quality::name)),
         names(&LESSONS.each_ref().map(|lesson| lesson.title)),

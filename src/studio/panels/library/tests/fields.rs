@@ -146,15 +146,15 @@ fn an_export_from_the_menu_takes_the_selection_or_asks_for_one() {
     let mut harness = harness(requested(), [420.0, 800.0]);
     // Removes the commands that were sent at the start.
     assert_eq!(taken(&mut harness), []);
-    let (mut panel, library) = (LibraryPanel::default(), requested());
-    panel.selection.only(&file("alpha"));
-    panel.take_requests(&library);
-    panel.take_requests(&library);
+    let library = requested();
+    let sent = |chosen: Option<SavePlace>| {
+        let mut panel = LibraryPanel::default();
+        chosen.iter().for_each(|place| panel.selection.only(place));
+        let harness = Harness::new_ui(|ui| panel.take_requests(ui, &library));
+        Command::take_sent(&harness.ctx)
+    };
     let question = FileQuestion::Export(vec![file("alpha")]);
-    assert_eq!(panel.sent, [Command::File(FileCommand::Ask(question))]);
-    let mut empty = LibraryPanel::default();
-    empty.take_requests(&library);
-    assert!(
-        matches!(&empty.sent[..], [Command::Notify(text)] if text.contains("Select what to export"))
-    );
+    assert_eq!(sent(Some(file("alpha"))), [Command::File(FileCommand::Ask(question))]);
+    let [Command::Notify(text)] = &sent(None)[..] else { panic!("a reason") };
+    assert!(text.contains("Select what to export"), "{text}");
 }

@@ -171,7 +171,7 @@ impl<'m> StairsMap<'m> {
             false => format!("{:.1} m nearer than on its own", -further_m),
         };
         format!(
-            "{}\n{frozen}Click to watch the most typical of the {}: with the first step {place}, the snake {}.",
+            "{}\n{frozen}Click to watch the most typical of the {}: with the first step {place}: {}.",
             said(cell),
             cell.trials,
             end_in_words(&cell.typical_end)

@@ -3,6 +3,7 @@
 use super::*;
 use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
 use crate::studio::panels::testing::{Sent, clicked, climber, panel, random_snake, shows};
+use crate::studio::state::stairs_exams::tests::NOT_LANDED;
 use egui_kittest::kittest::Queryable;
 use snakes_core::genome::ControllerKind;
 use snakes_core::score::{ExamEnd, ExamSuite, StairsGrid};
@@ -25,7 +26,7 @@ fn made_up(suite: ExamSuite, staged: &StagedChampion) -> StairsGrid {
         let has_landed = index % 5 < 5 - index / 20;
         let landed_s = has_landed.then_some(12.0);
         let steps = if has_landed { 10 } else { 3 };
-        ExamEnd { steps, way: 0.5, landed_s, arrived_s: None, has_landed, is_disqualified: false }
+        ExamEnd { steps, way: 0.5, landed_s, has_landed, ..NOT_LANDED }
     };
     let ends: Vec<ExamEnd> = (0..conditions.len()).map(end).collect();
     StairsGrid::of(suite, own, &conditions, &ends)
@@ -34,9 +35,9 @@ fn made_up(suite: ExamSuite, staged: &StagedChampion) -> StairsGrid {
 /// Creates the section, `width` points wide.
 fn section(staged: StagedChampion, exams: &StairsExams, width: f32) -> Sent<'_> {
     let lane = Lane::new(staged, 0);
-    panel([width, 500.0], move |ui, commands| {
+    panel([width, 500.0], move |ui| {
         theme::apply(ui.ctx());
-        exam(ui, &lane, exams, commands);
+        exam(ui, &lane, exams);
     })
 }
 
@@ -87,7 +88,7 @@ fn a_cell_tells_its_landings_and_a_click_watches_it() {
     assert_eq!(*section.state(), [Command::Exam(watch)]);
     section.get_by_label_contains("Rise 0.6 m, tread 1.5 m").hover();
     section.run();
-    let typical = "with the first step as far away as on its own, the snake ends on step 3.";
+    let typical = "with the first step as far away as on its own: out of time on step 3.";
     assert!(shows(&section, typical));
 }
 

@@ -15,7 +15,7 @@ const BAR_HEIGHT: f32 = theme::GAP;
 const BAR_WIDTH: f32 = theme::GAP * 15.0;
 /// Width of the text beside the bar, in points.
 const PERCENT_WIDTH: f32 = theme::GAP * 5.0;
-/// Minimum width of a column in which "5 of 5 limbs" fits, in points.
+/// Minimum width of a column in which "5 of 5 blocks" fits, in points.
 const WIDTH_FOR_LIMBS: f32 = theme::GAP * 12.5;
 /// Share of the available friction from which a contact counts as sliding. The engine's values stay slightly below 1.
 const SLIDES_FROM: f32 = 0.995;
@@ -57,7 +57,7 @@ impl<'l> LaneColumn<'l> {
             (None, _) => "recording".to_owned(),
             (_, None) => "none".to_owned(),
             (_, Some(reading)) => {
-                let unit = if ui.available_width() < WIDTH_FOR_LIMBS { "" } else { " limbs" };
+                let unit = if ui.available_width() < WIDTH_FOR_LIMBS { "" } else { " blocks" };
                 format!("{} of {}{unit}", reading.limbs, self.lane.body.limbs())
             }
         };
@@ -111,13 +111,13 @@ impl<'l> LaneColumn<'l> {
                 let Some(reading) = meter.limb(self.is_playing, limb, self.is_meant) else {
                     continue;
                 };
-                ui.label(format!("Limb {}", limb + 1));
+                ui.label(format!("Block {}", limb + 1));
                 for text in [
                     format!("{:5.2} m/s", reading.slip_m_s),
                     reading.grip_share.map_or(UNKNOWN.to_owned(), in_percent),
                     in_mm(reading.depth_m),
                 ] {
-                    ui.label(egui::RichText::new(format!("{text:>6}")).monospace());
+                    ui.monospace(format!("{text:>6}"));
                 }
                 ui.end_row();
             }
@@ -140,8 +140,7 @@ impl<'l> LaneColumn<'l> {
                 ("Sum", lost.total_j),
             ] {
                 ui.label(name);
-                let text = format!("{:>8}", in_joules(energy_j));
-                ui.label(egui::RichText::new(text).monospace());
+                ui.monospace(format!("{:>8}", in_joules(energy_j)));
                 ui.end_row();
             }
         });

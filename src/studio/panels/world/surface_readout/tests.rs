@@ -4,10 +4,9 @@ use super::lane_column::in_joules;
 use super::*;
 use crate::studio::panels::champions::tests::assert_no_texts_overlap;
 use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, assert_shows};
-use crate::studio::panels::testing::{climber, climber_lane, shows};
+use crate::studio::panels::testing::{self, Sent, climber, climber_lane, shows};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::decimals::in_percent;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use snakes_core::save::shipped_champion;
 use snakes_core::score::Recording;
@@ -27,16 +26,14 @@ fn on_stone_and_ice() -> [Lane; 2] {
     })
 }
 
-fn panel<'a>(lanes: Vec<&'a Lane>, surface: ReadSurface, width: f32) -> Harness<'a> {
-    let are_named = lanes.len() > 1;
-    let read = ReadLanes { lanes, are_named, is_playing: false };
-    let size = egui::vec2(width, 400.0);
-    let mut harness = Harness::builder().with_size(size).build_ui(move |ui| {
-        theme::apply(ui.ctx());
-        read.ui(ui, surface);
-    });
-    harness.run();
-    harness
+fn panel<'a>(lanes: Vec<&'a Lane>, surface: ReadSurface, width: f32) -> Sent<'a> {
+    testing::panel([width, 400.0], move |ui| draw(ui, &lanes, surface))
+}
+
+fn draw(ui: &mut egui::Ui, lanes: &[&Lane], surface: ReadSurface) {
+    theme::apply(ui.ctx());
+    let (lanes, are_named) = (lanes.to_vec(), lanes.len() > 1);
+    ReadLanes { lanes, are_named, is_playing: false }.ui(ui, surface);
 }
 
 #[test]
@@ -82,7 +79,7 @@ fn pointing_at_a_number_explains_it_limb_by_limb() {
     panel.hover_at(slip.center());
     panel.run_steps(60);
     assert!(shows(&panel, &format!("Fastest point: {:.2} m/s", reading.top_slip_m_s)));
-    let limbs = (1..=5).filter(|limb| shows(&panel, &format!("Limb {limb}"))).count();
+    let limbs = (1..=5).filter(|limb| shows(&panel, &format!("Block {limb}"))).count();
     assert_eq!(
         limbs,
         (0..5).filter(|limb| lane.readings.meter.limb(false, *limb, |_| true).is_some()).count()
@@ -112,7 +109,7 @@ fn a_ground_of_its_own_has_readings_of_its_own() {
     let mut own = Lane::new(shared.staged.in_world(&trial, "own".to_owned()), 0);
     own.show(0.9, None, 3000).expect("healthy");
     let ground = panel(vec![&own], ReadSurface::Ground, 320.0);
-    assert!(shows(&ground, "On the ground now") && shows(&ground, "of 5 limbs"));
+    assert!(shows(&ground, "On the ground now") && shows(&ground, "of 5 blocks"));
     let stairs = panel(vec![&own], ReadSurface::Stairs, 320.0);
     assert!(shows(&stairs, "On the stairs now") && shows(&stairs, "none"), "far from them");
 }
@@ -140,7 +137,7 @@ fn the_values_of_five_snakes_are_whole_in_the_narrowest_panel() {
             assert!(shown.iter().all(|width| *width >= whole - 0.5), "{label}: {shown:?}, {whole}");
         }
     }
-    assert!(shows(&panel, "of 5") && !shows(&panel, "of 5 limbs"), "short in narrow columns");
+    assert!(shows(&panel, "of 5") && !shows(&panel, "of 5 blocks"), "short in narrow columns");
     assert_eq!((in_m_s(9.99), in_m_s(12.34)), ("9.99 m/s".to_owned(), "12.3 m/s".to_owned()));
 }
 
@@ -160,17 +157,12 @@ fn the_columns_of_one_settings_values_are_told_apart_by_their_values() {
 
 #[test]
 fn a23_texts_do_not_overlap_in_the_frame_after_a_change_is_discarded() {
-    let lanes = on_stone_and_ice();
+    let [stone, ice] = on_stone_and_ice();
     let shown = std::cell::Cell::new(2);
-    let size = egui::vec2(384.0, 400.0);
-    let mut harness = Harness::builder().with_size(size).build_ui(|ui| {
-        theme::apply(ui.ctx());
-        let lanes: Vec<&Lane> = lanes.iter().take(shown.get()).collect();
-        let are_named = lanes.len() > 1;
-        ReadLanes { lanes, are_named, is_playing: false }.ui(ui, ReadSurface::Stairs);
+    let mut panel = testing::panel([384.0, 400.0], |ui| {
+        draw(ui, &[&stone, &ice][..shown.get()], ReadSurface::Stairs);
     });
-    harness.run();
     shown.set(1);
-    harness.step();
-    assert_no_texts_overlap(&harness, egui::Rect::EVERYTHING, 9, 1.0);
+    panel.step();
+    assert_no_texts_overlap(&panel, egui::Rect::EVERYTHING, 9, 1.0);
 }

@@ -1,7 +1,7 @@
 //! The lesson about bodies that evolve with their gaits.
 
 use crate::studio::state::lessons::lesson::{
-    Lesson, LessonScene, Shows, furthest, lane, lane_of_body, run,
+    Lesson, LessonScene, Shows, furthest, lane_of_body, runs_of, side,
 };
 use crate::studio::state::lessons::prediction::{Asks, Question};
 use snakes_core::genome::BodyChange;
@@ -10,8 +10,8 @@ use snakes_core::genome::BodyChange;
 pub(super) const PROTECTION: Lesson = Lesson {
     title: "What protection does for new bodies",
     question: "Why does evolution settle so soon on a body?",
-    story: "Bodies can evolve with their gaits. The stage shows a snake with the gait of its body, and the same gait with \
-            a block more and a block less.",
+    story: "A body and its gait, its way of moving, can evolve together. The stage shows a snake, and its gait with a block \
+            more and a block less.",
     to_try: "Guess, and watch the race. Then let bodies evolve for 24 generations of 60 snakes, twice: choosing by \
              fitness alone, and with protection, where a new body competes only with bodies just as new.",
     look_for: "How the same gait moves the three bodies. In the runs, how often the best snake has another body than the \
@@ -22,16 +22,16 @@ pub(super) const PROTECTION: Lesson = Lesson {
         LessonScene {
             label: "A block more, a block less",
             shows: Shows::Champion("tapered"),
-            question: furthest("In another body the same gait leads nowhere."),
+            question: furthest("In another body the same gait climbs no step."),
             sides: &[
-                lane("original", &[]),
+                side("original", &[]),
                 lane_of_body("a block more", BodyChange::Duplicate, 2),
                 lane_of_body("a block less", BodyChange::Remove, 2),
             ],
         },
         LessonScene {
             label: "With and without protection",
-            shows: Shows::RunsOf("bodies"),
+            shows: runs_of("bodies", 1, SMALL),
             question: Some(Question {
                 text: "In which run does the body of the best snake change more often in the second half?",
                 asks: Asks::LateBodyChanges,
@@ -39,28 +39,21 @@ pub(super) const PROTECTION: Lesson = Lesson {
                           improves. Other runs may differ.",
             }),
             sides: &[
-                run("with protection", 1, &PROTECTED),
-                run("without protection", 1, &UNPROTECTED),
+                side("with protection", &[("body_ga.protection", "age")]),
+                side("without protection", &[("body_ga.protection", "none")]),
             ],
         },
     ],
     worksheet: include_str!("../../../../../docs/worksheets/7.md"),
 };
 
-/// Settings of a run that protects new bodies, small enough for a lesson.
-const PROTECTED: [(&str, &str); 7] = of_runs("age");
-/// Settings of the same run without protection.
-const UNPROTECTED: [(&str, &str); 7] = of_runs("none");
-
-const fn of_runs(protection: &'static str) -> [(&'static str, &'static str); 7] {
-    [
-        // The conclusion refers to runs with this engine.
-        ("engine", "rapier"),
-        ("strategy", "body_ga"),
-        ("body_ga.protection", protection),
-        ("population", "60"),
-        ("generations", "24"),
-        ("duration_s", "10"),
-        ("champion_trials", "0"),
-    ]
-}
+/// Settings of both runs, small enough for a lesson.
+const SMALL: &[(&str, &str)] = &[
+    // The conclusion refers to runs with this engine.
+    ("engine", "rapier"),
+    ("strategy", "body_ga"),
+    ("population", "60"),
+    ("generations", "24"),
+    ("duration_s", "10"),
+    ("champion_trials", "0"),
+];

@@ -1,16 +1,16 @@
 //! The lesson about stairs that grow with the snakes.
 
 use crate::studio::state::lessons::lesson::{
-    Lesson, LessonScene, Shows, best_run, furthest, lane, run,
+    Lesson, LessonScene, Shows, best_run, furthest, runs_of, side,
 };
 
-/// Lesson on the ladder: stairs that become higher as the snakes learn.
+/// Lesson on the ladder: stairs that become higher as the snakes improve.
 pub(super) const LADDER: Lesson = Lesson {
     title: "Why a ladder helps",
     question: "Does it pay to begin with lower stairs?",
     story: "Most random snakes do not get onto a steep first step: all look equally bad. The stage shows one snake on two \
             flights.",
-    to_try: "Guess, and watch the race. Then let two runs of 54 generations learn on the same stairs: one from the start, \
+    to_try: "Guess, and watch the race. Then let two runs of 54 generations evolve on the same stairs: one from the start, \
              the other by way of lower stairs, which grow whenever most snakes of a generation succeed.",
     look_for: "How far the same snake gets on low and on high steps. In the runs, when each line rises, and whether it gets \
                stuck.",
@@ -23,28 +23,20 @@ pub(super) const LADDER: Lesson = Lesson {
             question: furthest(
                 "It climbs the lower flight, and cannot get onto the first step of the higher one.",
             ),
-            sides: &[lane("steps 0.2 m high", &FLIGHTS[0]), lane("steps 0.4 m high", &FLIGHTS[1])],
+            // Both flights have shallow treads, but their rises differ.
+            sides: &[
+                side("steps 0.2 m high", &[("stairs.tread_m", "0.8"), ("stairs.rise_m", "0.2")]),
+                side("steps 0.4 m high", &[("stairs.tread_m", "0.8"), ("stairs.rise_m", "0.4")]),
+            ],
         },
         LessonScene {
             label: "Direct and by a ladder",
-            shows: Shows::RunsOf("house"),
+            shows: runs_of("house", 102, &[("generations", "54"), ("champion_trials", "0")]),
             question: best_run(
                 "With as many simulations, the direct search has come no further than the fourth step. Other runs may differ.",
             ),
-            sides: &[run("direct", 102, &DIRECT), run("by a ladder", 102, &BY_LADDER)],
+            sides: &[side("direct", &[]), side("by a ladder", &[("ladder.first_rise_m", "0.1")])],
         },
     ],
     worksheet: include_str!("../../../../../docs/worksheets/5.md"),
 };
-
-/// Settings of the two staircases: both have shallow treads, but their rises differ.
-const FLIGHTS: [[(&str, &str); 2]; 2] = [
-    [("stairs.tread_m", "0.8"), ("stairs.rise_m", "0.2")],
-    [("stairs.tread_m", "0.8"), ("stairs.rise_m", "0.4")],
-];
-
-/// Settings of the run that evolves directly on the final stairs.
-const DIRECT: [(&str, &str); 2] = [("generations", "54"), ("champion_trials", "0")];
-/// Settings of the run that reaches the final stairs by a ladder.
-const BY_LADDER: [(&str, &str); 3] =
-    [("generations", "54"), ("champion_trials", "0"), ("ladder.first_rise_m", "0.1")];

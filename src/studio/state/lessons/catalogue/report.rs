@@ -1,7 +1,7 @@
 //! The lessons on the experiences that the authors of the report describe.
 
 use crate::studio::state::lessons::lesson::{
-    AS_FOUND, Lesson, LessonScene, Shows, Side, best_run, furthest, lane, run, same_hash,
+    AS_FOUND, Lesson, LessonScene, Shows, Side, best_run, furthest, runs_of, same_hash, side,
 };
 use crate::studio::state::lessons::prediction::{Asks, Question};
 
@@ -11,37 +11,37 @@ pub(super) const FRICTION: Lesson = Lesson {
     question: "How much grip do stairs need?",
     story: "In the report's experiment, which this program rebuilds, the surface was tuned by eye, which took a long \
             time. The stage shows the same snake on a surface like ice (friction 0.1), on its own surface (1) and on a \
-            surface like glue (5).",
+            much rougher surface (5).",
     to_try: "Guess which snake gets furthest, then watch the race. Afterwards select the original, go back to \
              the start, open the Change panel and drag Friction: a copy of the snake starts beside it with the new value.",
     look_for: "How far each snake gets. The genome is the same in all lanes; only the surface differs.",
-    conclusion: "A snake that evolved on one surface is fit for that surface and tolerates some change, but not \
-                 any. The Change panel lets you set every property of a surface as a number and \
+    conclusion: "A snake that evolved on one surface is adapted to it: it tolerates small changes, not large \
+                 ones. The Change panel lets you set every property of a surface as a number and \
                  see its effect at once.",
     scenes: &[
         LessonScene {
-            label: "Ice, original, glue",
+            label: "Ice, original, very rough",
             shows: Shows::Champion("robust"),
             question: furthest(
                 "With too little grip the snake slips; with too much, a block catches on the edge of a step and \
                  holds the others back.",
             ),
             sides: &[
-                lane("friction 0.1", &[("surface.friction", "0.1")]),
-                lane("original", &[]),
-                lane("friction 5", &[("surface.friction", "5")]),
+                side("friction 0.1", &[("surface.friction", "0.1")]),
+                side("original", &[]),
+                side("friction 5", &[("surface.friction", "5")]),
             ],
         },
         LessonScene {
             label: "A little less, a little more",
             shows: Shows::Champion("robust"),
             question: furthest(
-                "With 0.3 less or more, the snake ends nearer, but still reaches the landing.",
+                "With 0.3 less or more, it gets less far, but still reaches the landing.",
             ),
             sides: &[
-                lane("friction 0.7", &[("surface.friction", "0.7")]),
-                lane("original", &[]),
-                lane("friction 1.3", &[("surface.friction", "1.3")]),
+                side("friction 0.7", &[("surface.friction", "0.7")]),
+                side("original", &[]),
+                side("friction 1.3", &[("surface.friction", "1.3")]),
             ],
         },
     ],
@@ -61,31 +61,31 @@ pub(super) const FRAME_RATE: Lesson = Lesson {
     look_for: "In the race, where each snake ends. At each playback speed, all digits of the end position, and \
                the hash of the motion: sixteen characters (0 to 9 and a to f) that summarise every bit of each \
                block's position after every physics step.",
-    conclusion: "Here every physics step has the same length, whatever is drawn. A slow computer shows fewer frames of the same climb. Some snakes climb at any step rate.",
+    conclusion: "Every physics step has the same length, whatever is drawn. A slow computer shows fewer frames of the same climb. Some snakes climb at any step rate.",
     scenes: &[
         LessonScene {
             label: "More physics steps per second",
             shows: Shows::Champion("by-heart"),
             question: Some(Question {
-                text: "Which snake ends furthest, on the stairs or beside them?",
+                text: "Which snake ends furthest? The ground beside the stairs counts, too.",
                 asks: Asks::Furthest,
                 finding: "At 120 it falls off and ends further, but on the ground.",
             }),
             sides: &[
-                lane("original", &[]),
-                lane("120 physics steps/s", &[("physics.steps_per_s", "120")]),
-                lane("240 physics steps/s", &[("physics.steps_per_s", "240")]),
+                side("original", &[]),
+                side("120 physics steps/s", &[("physics.steps_per_s", "120")]),
+                side("240 physics steps/s", &[("physics.steps_per_s", "240")]),
             ],
         },
         LessonScene {
-            label: "The original at two playback speeds",
+            label: "Another snake at two playback speeds",
             shows: Shows::Champion("climber"),
             question: Some(Question {
                 text: "Play it to its end at two speeds. Will it end exactly the same?",
                 asks: Asks::PlaybackSpeed,
                 finding: "Playback speed changes when a step is drawn, not what happens in it.",
             }),
-            sides: &[lane("original", &[])],
+            sides: &[side("another snake", &[])],
         },
     ],
     worksheet: include_str!("../../../../../docs/worksheets/8.md"),
@@ -103,27 +103,21 @@ pub(super) const JOINT_LIMITS: Lesson = Lesson {
                afterwards.",
     conclusion: "Limits remove more useless movements than useful ones, so that evolution has more snakes to \
                  choose from. What it then finds depends on the fitness: here only the distance counts, and six \
-                 generations find a way past the stairs.",
+                 generations find a way around the stairs.",
     scenes: &[
         AS_FOUND,
         LessonScene {
             label: "Evolve with and almost without limits",
-            shows: Shows::RunsOf("quick"),
+            shows: runs_of("quick", 3, &[("population", "120"), ("generations", "6")]),
             question: best_run(
                 "Almost without limits, more snakes are disqualified, and fewer are left to breed from. The \
-                 best snake with limits gets further, but it goes past the stairs.",
+                 best snake with limits gets further, but beside the stairs.",
             ),
             sides: &[
-                run("with limits", 3, &[("population", "120"), ("generations", "6")]),
-                run(
+                side("with limits", &[]),
+                side(
                     "almost no limits",
-                    3,
-                    &[
-                        ("population", "120"),
-                        ("generations", "6"),
-                        ("bend_limits_rad", "[3]"),
-                        ("twist_limits_rad", "[3]"),
-                    ],
+                    &[("bend_limits_rad", "[3]"), ("twist_limits_rad", "[3]")],
                 ),
             ],
         },
@@ -136,9 +130,10 @@ pub(super) const MUTATIONS: Lesson = Lesson {
     title: "Mutations: how fast should they shrink?",
     question: "What happens to the progress of a run when its mutations become smaller?",
     story: "Children differ from their parent by random changes within a mutation range. In the report's \
-            experiment this range halved with each generation: 100, 50, 25 N·m and so on.",
+            experiment this range halved with each generation: 100, 50, 25 N·m and so on. A second run here shrinks it \
+            by only 5 % each time.",
     to_try: "Run evolution twice for fourteen generations: with a range that halves, and with one that shrinks \
-             by only 5 % per generation.",
+             slowly.",
     look_for: "The two lines, early and late: which is ahead, and which still rises?",
     conclusion: "Small changes refine a solution; large changes find new ones. A range that vanishes after six \
                  generations can only refine. With the strategy Halving, you set the range and its decay in the Watch \
@@ -147,18 +142,14 @@ pub(super) const MUTATIONS: Lesson = Lesson {
         AS_FOUND,
         LessonScene {
             label: "Evolve with both ranges",
-            shows: Shows::RunsOf("quick"),
+            shows: runs_of("quick", 4, &[("population", "120"), ("generations", "14")]),
             question: best_run(
-                "With the range that stays large, the best snake gets further. Not every run shows this, \
+                "With the range that shrinks slowly, the best snake gets further. Not every run shows this, \
                  because some are lucky early.",
             ),
             sides: &[
-                run("range halves", 4, &[("population", "120"), ("generations", "14")]),
-                run(
-                    "range stays large",
-                    4,
-                    &[("population", "120"), ("generations", "14"), ("mutation_decay", "0.95")],
-                ),
+                side("range halves", &[]),
+                side("range shrinks slowly", &[("mutation_decay", "0.95")]),
             ],
         },
     ],
@@ -176,36 +167,28 @@ pub(super) const REPETITION: Lesson = Lesson {
              changed by a millionth.",
     look_for: "The hash of each run: sixteen characters (0 to 9 and a to f) that summarise every bit of \
                every evaluation.",
-    conclusion: "A hash tells at once whether two runs are the same in every bit. Only a result that can be \
-                 repeated exactly can be checked, and work on it can be shared between computers.",
+    conclusion: "A hash tells at once whether two runs are the same in every bit. If a run repeats \
+                 exactly, one repetition is enough to check it, and computers can share the work.",
     scenes: &[
         AS_FOUND,
         LessonScene {
             label: "The same run twice",
-            shows: Shows::RunsOf("quick"),
+            shows: runs_of("quick", 1, &[("population", "60"), ("generations", "6")]),
             question: same_hash(
                 "The same settings and the same random numbers (seed) give the same hash, however many snakes are \
-                 computed at a time, and on every computer with an x86-64 processor.",
+                 computed at a time, and on every computer with an Intel or AMD processor (x86-64).",
             ),
-            sides: &[
-                run("one at a time", 1, &[("population", "60"), ("generations", "6")]),
-                Side {
-                    threads: 2,
-                    ..run("two at a time", 1, &[("population", "60"), ("generations", "6")])
-                },
-            ],
+            sides: &[side("one at a time", &[]), Side { threads: 2, ..side("two at a time", &[]) }],
         },
         LessonScene {
             label: "Friction changed by a millionth",
-            shows: Shows::RunsOf("quick"),
-            question: same_hash("Even a change of a millionth gives another result."),
+            shows: runs_of("quick", 1, &[("population", "60"), ("generations", "6")]),
+            question: same_hash(
+                "Even a millionth changes the hash, which does not tell how much the results differ.",
+            ),
             sides: &[
-                run("friction 1", 1, &[("population", "60"), ("generations", "6")]),
-                run(
-                    "friction 1.000001",
-                    1,
-                    &[("population", "60"), ("generations", "6"), ("surface.friction", "1.000001")],
-                ),
+                side("friction 5", &[]),
+                side("friction 5.000005", &[("surface.friction", "5.000005")]),
             ],
         },
     ],

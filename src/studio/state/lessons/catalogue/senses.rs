@@ -1,40 +1,40 @@
 //! The lessons on senses: the limits of a snake without senses, and the use that a snake makes of its senses.
 
-use crate::studio::state::lessons::lesson::{Lesson, LessonScene, Shows, furthest, lane};
+use crate::studio::state::lessons::lesson::{Lesson, LessonScene, Shows, furthest, side};
 
 /// Lesson on changed stairs, for a snake without senses and one with senses.
-pub(super) const LEARNED_BY_HEART: Lesson = Lesson {
-    title: "Learned by heart",
+pub(super) const ONE_MOTION: Lesson = Lesson {
+    title: "One motion for all stairs",
     question: "Does a snake that climbs its own stairs climb others?",
     story: "Most snakes of this program feel nothing but their joints: they repeat one motion. The stage shows such \
-            a snake on its own steps, 0.5 m high, on lower and on higher ones; then a snake whose limbs feel the ground.",
+            a snake on its own steps, 0.5 m high, on lower and on higher ones; then a snake whose blocks feel the ground.",
     to_try: "Guess, and watch the first race. Do the same with the second snake. Afterwards open the Senses panel \
              and choose Examine on 100 staircases.",
     look_for: "Whether the motion changes with the stairs: the first snake moves its joints alike on all of them; the \
-               second waits, pushes and turns as its limbs touch the steps.",
+               second waits, pushes and turns as its blocks touch the steps.",
     conclusion: "A repeated motion may fit other stairs or not: of 100 staircases this snake climbs 61, the best of its \
                  kind 87. The second climbs 78, because it feels them: without senses only 28.",
     scenes: &[
         LessonScene {
-            label: "A snake that feels nothing",
+            label: "A snake that feels only its joints",
             shows: Shows::Champion("climber"),
             question: furthest(
                 "Lower steps do not stop it, but steps 0.6 m high do: after five of them its motion and the steps no \
                  longer fit.",
             ),
             sides: &[
-                lane("steps 0.4 m high", &[("stairs.rise_m", "0.4")]),
-                lane("original", &[]),
-                lane("steps 0.6 m high", &[("stairs.rise_m", "0.6")]),
+                side("steps 0.4 m high", &[("stairs.rise_m", "0.4")]),
+                side("original", &[]),
+                side("steps 0.6 m high", &[("stairs.rise_m", "0.6")]),
             ],
         },
         LessonScene {
-            label: "A snake that feels its limbs",
+            label: "A snake that feels the ground",
             shows: Shows::Champion("feeler"),
             question: furthest("It stands on the landing of both stairs."),
             sides: &[
-                lane("0.4 m high, with senses", &[("stairs.rise_m", "0.4")]),
-                lane("0.6 m high, with senses", &[("stairs.rise_m", "0.6")]),
+                side("0.4 m high, with senses", &[("stairs.rise_m", "0.4")]),
+                side("0.6 m high, with senses", &[("stairs.rise_m", "0.6")]),
             ],
         },
     ],
@@ -49,10 +49,10 @@ pub(super) const BLINDFOLD: Lesson = Lesson {
             out which it needs, researchers take one away: that sense keeps the value that it had at the start.",
     to_try: "Guess, and watch the snake with and without sight. Then guess what it does without touch and without \
              balance. The switches in the Senses panel do the same to any snake that senses, at any moment.",
-    look_for: "Which copies keep to the motion of the original, and which lose their way on the stairs. Click a limb: the \
+    look_for: "Which copies keep to the motion of the original, and which lose their way on the stairs. Click a block: the \
                wiring in the Senses panel shows which senses its neurons read.",
-    conclusion: "Evolution uses what helps, and nothing says beforehand which sense that is. Only an experiment tells. \
-                 Examine on 100 staircases, in the Senses panel, also takes away all of them at once.",
+    conclusion: "Evolution uses what helps. Watching a snake does not show which sense that is: its wiring gives a hint, and an \
+                 experiment tells. Examine on 100 staircases, in the Senses panel, also takes away all of them at once.",
     scenes: &[
         LessonScene {
             label: "Without sight",
@@ -61,19 +61,19 @@ pub(super) const BLINDFOLD: Lesson = Lesson {
                 "Its neurons read no sense of the stairs ahead, so it moves exactly alike without sight: it feels \
                  its way.",
             ),
-            sides: &[lane("original", &[]), lane("without sight", &[("senses.sight", "false")])],
+            sides: &[side("original", &[]), side("without sight", &[("senses.sight", "false")])],
         },
         LessonScene {
             label: "Without touch, without balance",
             shows: Shows::Champion("feeler"),
             question: furthest(
-                "Without touch it no longer knows when a limb stands on a step, and stops in the middle of the \
+                "Without touch it no longer knows when a block stands on a step, and stops in the middle of the \
                  stairs; without balance it stops further up.",
             ),
             sides: &[
-                lane("original", &[]),
-                lane("without touch", &[("senses.touch", "false")]),
-                lane("without balance", &[("senses.balance", "false")]),
+                side("original", &[]),
+                side("without touch", &[("senses.touch", "false")]),
+                side("without balance", &[("senses.balance", "false")]),
             ],
         },
     ],

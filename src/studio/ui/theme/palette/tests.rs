@@ -80,7 +80,7 @@ fn apart(one: Color32, other: Color32) -> f32 {
 }
 
 #[test]
-fn lanes_have_colours_that_color_blind_eyes_tell_apart() {
+fn lanes_and_the_directions_of_a_torque_have_colours_that_color_blind_eyes_tell_apart() {
     for (theme, of) in [("light", &LIGHT), ("dark", &DARK)] {
         for number in 0..10 {
             let own = of.lane_color(number);
@@ -92,14 +92,8 @@ fn lanes_have_colours_that_color_blind_eyes_tell_apart() {
             }
         }
         assert_eq!(of.lane_color(13), of.lane_color(3), "{theme}");
-    }
-}
-
-#[test]
-fn the_directions_of_a_torque_have_colours_that_color_blind_eyes_tell_apart() {
-    for of in [&LIGHT, &DARK] {
         let apart = apart(of.torque_plus, of.torque_minus);
-        assert!(apart > 0.2, "{apart}");
+        assert!(apart > 0.2, "{theme}: directions of a torque: {apart}");
     }
 }
 

@@ -7,7 +7,7 @@ in_both_engines!(a_block_that_slides_to_rest_loses_its_kinetic_energy);
 fn a_block_that_slides_to_rest_loses_its_kinetic_energy() {
     let mut simulation = Simulation::new(&block(Surface { friction: 0.5, ..Default::default() }));
     run(&mut simulation, 1.0);
-    body(&mut simulation).set_linvel(Vector::new(0.0, -4.0, 0.0), true);
+    body(&mut simulation).linear = Vector::new(0.0, -4.0, 0.0);
     let before_j = simulation.energy_lost().total_j;
     run(&mut simulation, 2.0);
     let lost_j = simulation.energy_lost().total_j - before_j;
@@ -20,8 +20,8 @@ fn a_dropped_block_loses_in_the_air_nothing_and_at_the_impact_what_its_bounce_le
         let mut plan = block(Surface { bounce, ..Default::default() });
         plan.physics.steps_per_s = 240;
         let mut simulation = Simulation::new(&plan);
-        let above = body(&mut simulation).translation() + Vector::new(0.0, 0.0, 1.0);
-        body(&mut simulation).set_translation(above, true);
+        let above = body(&mut simulation).at + Vector::new(0.0, 0.0, 1.0);
+        body(&mut simulation).at = above;
         let before_j = simulation.energy_lost().total_j;
         run(&mut simulation, 0.4);
         let falling_j = simulation.energy_lost().total_j - before_j;
@@ -50,7 +50,7 @@ in_both_engines!(holding_power_counts_the_square_of_each_torque_and_never_as_wor
 fn holding_power_counts_the_square_of_each_torque_and_never_as_work() {
     let spent = |power_w: f32, bend_nm: f32, twist_nm: f32| {
         let (_, mut simulation) = weightless(2);
-        simulation.body.holding_w_per_n2m2 = power_w / 1.0e6;
+        simulation.plan.body.holding_w_per_n2m2 = power_w / 1.0e6;
         for _ in 0..120 {
             simulation.step(&[JointTorque { bend_nm, twist_nm }]).expect("healthy");
         }
@@ -94,12 +94,7 @@ fn without_contacts_and_stops_the_damping_of_joints_and_of_rotation_is_all_that_
         for joint in &mut plan.body.joints {
             joint.damping_nms_per_rad = damping_nms_per_rad;
         }
-        let mut simulation = Simulation::new(&plan);
-        for limb in simulation.parts.clone() {
-            let body = &mut simulation.physics_mut().bodies[limb];
-            let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
-            body.set_translation(above, true);
-        }
+        let mut simulation = lifted(&plan);
         for step in 0..300 {
             let phase_rad = step as f32 * 0.2;
             let torques = [0.0, 1.2, 2.4, 3.6].map(|behind_rad| JointTorque {
@@ -125,12 +120,10 @@ fn a_snake_that_gains_energy_without_its_joints_is_disqualified() {
     let still = vec![JointTorque::default(); plan.body.joints.len()];
     simulation.begin_balance();
     simulation.step(&still).expect("nothing moves");
-    let limb = simulation.parts[0];
     // A mass of 5 kg at 1 m/s has 2.5 J, more than the limit of 1 J; at 0.5 m/s it has 0.6 J.
     for (speed_m_s, expected) in [(0.5, Ok(())), (1.0, Err(Disqualification::EnergyFromNothing))] {
         let mut pushed = simulation.clone();
-        let body = &mut pushed.physics.bodies[limb];
-        body.set_linvel(Vector::new(speed_m_s, 0.0, 0.0), true);
+        pushed.engine.parts_mut()[0].linear.x = speed_m_s;
         assert_eq!(pushed.step(&still), expected, "{speed_m_s} m/s");
     }
 }

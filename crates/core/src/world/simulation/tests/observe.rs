@@ -29,9 +29,7 @@ fn friction_opposes_the_motion_with_the_force_of_its_law() {
     plan.surface.friction = 0.5;
     plan.ground.friction = 0.5;
     let mut simulation = Simulation::new(&plan);
-    for limb in simulation.parts.clone() {
-        simulation.physics_mut().bodies[limb].set_linvel(Vector::new(0.0, -4.0, 0.0), true);
-    }
+    simulation.change_parts(|(_, part)| part.linear.y = -4.0);
     for _ in 0..10 {
         simulation.step(&[]).expect("healthy");
     }

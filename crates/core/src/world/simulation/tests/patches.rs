@@ -17,11 +17,8 @@ fn patch(simulation: &Simulation) -> ContactPatch {
 fn pushed(surface: Surface, push_n: f32, seconds: f32) -> Simulation {
     let mut simulation = Simulation::new(&block(surface));
     run(&mut simulation, 1.0);
-    for _ in 0..(seconds * 60.0) as u32 {
-        body(&mut simulation).reset_forces(true);
-        body(&mut simulation).add_force(Vector::new(0.0, push_n, 0.0), true);
-        simulation.step(&[]).expect("healthy");
-    }
+    body(&mut simulation).force_n.y = push_n;
+    run(&mut simulation, seconds);
     simulation
 }
 
@@ -43,9 +40,9 @@ fn a_sliding_block_uses_all_grip_slips_at_its_speed_and_loses_friction_times_spe
         let surface = Surface { friction, ..Default::default() };
         let mut simulation = Simulation::new(&block(surface));
         run(&mut simulation, 1.0);
-        body(&mut simulation).set_linvel(Vector::new(0.0, -4.0, 0.0), true);
+        body(&mut simulation).linear = Vector::new(0.0, -4.0, 0.0);
         run(&mut simulation, 0.5);
-        let speed_m_s = -body(&mut simulation).linvel().y;
+        let speed_m_s = -body(&mut simulation).linear.y;
         assert!((speed_m_s - (4.0 - friction * 9.81 * 0.5)).abs() < 0.05, "{speed_m_s}");
         let patch = patch(&simulation);
         assert!(patch.grip_share > 0.999, "{patch:?}");
@@ -91,19 +88,19 @@ in_both_engines!(
 fn a_block_that_spins_flat_on_the_ground_uses_all_grip_and_loses_its_rotation_to_friction() {
     let mut simulation = Simulation::new(&block(Surface { friction: 0.2, ..Default::default() }));
     run(&mut simulation, 1.0);
-    body(&mut simulation).set_angvel(Vector::new(0.0, 0.0, 6.0), true);
+    body(&mut simulation).angular = Vector::new(0.0, 0.0, 6.0);
     simulation.step(&[]).expect("healthy");
     let turning = patch(&simulation);
     assert!(turning.grip_share > 0.999, "{turning:?}");
-    let corner_m_s = body(&mut simulation).angvel().z * (0.5_f32 * 0.5 + 1.0).sqrt();
+    let corner_m_s = body(&mut simulation).angular.z * (0.5_f32 * 0.5 + 1.0).sqrt();
     assert!((turning.slip_m_s / corner_m_s - 1.0).abs() < 0.02, "{turning:?} for {corner_m_s}");
-    let energy_j = body(&mut simulation).kinetic_energy();
+    let energy_j = kinetic_j(&simulation);
     let mut friction_j = 0.0;
     for _ in 0..120 {
         simulation.step(&[]).expect("healthy");
         friction_j += patch(&simulation).friction_w / 60.0;
     }
-    assert!(body(&mut simulation).kinetic_energy() < 1e-3, "it has stopped");
+    assert!(kinetic_j(&simulation) < 1e-3, "it has stopped");
     assert!((friction_j / energy_j - 1.0).abs() < 0.1, "{friction_j} of {energy_j} J");
 }
 
@@ -112,8 +109,8 @@ fn surface_damping_takes_the_energy_that_the_limb_loses() {
     let surface = Surface { friction: 0.0, dampen_per_s: 2.0, ..Default::default() };
     let mut simulation = Simulation::new(&block(surface));
     run(&mut simulation, 0.5);
-    body(&mut simulation).set_linvel(Vector::new(0.0, 2.0, 0.0), true);
-    let before_j = body(&mut simulation).kinetic_energy();
+    body(&mut simulation).linear = Vector::new(0.0, 2.0, 0.0);
+    let before_j = kinetic_j(&simulation);
     let mut damped_j = 0.0;
     for _ in 0..30 {
         simulation.step(&[]).expect("healthy");
@@ -123,7 +120,7 @@ fn surface_damping_takes_the_energy_that_the_limb_loses() {
             mean * simulation.surface_damping().map(|loss| loss.power_w).sum::<f32>() / 60.0;
         assert!(simulation.surface_damping().all(|loss| loss.touched == TouchedSurface::Ground));
     }
-    let lost_j = before_j - body(&mut simulation).kinetic_energy();
+    let lost_j = before_j - kinetic_j(&simulation);
     assert!(lost_j > 5.0 && (damped_j / lost_j - 1.0).abs() < 0.01, "{damped_j} of {lost_j} J");
     assert_eq!(patch(&simulation).grip_share, 0.0, "there is no friction to use");
 }
@@ -133,30 +130,27 @@ fn patches_tell_stairs_ground_and_limbs_apart_and_air_has_none() {
     let mut plan = block(Surface::default());
     plan.start_y_m = plan.stairs.riser_y_m(10) + 5.0;
     let mut simulation = Simulation::new(&plan);
-    let landing = body(&mut simulation).translation() + Vector::new(0.0, 0.0, 5.0);
-    body(&mut simulation).set_translation(landing + Vector::new(0.0, 0.0, 1.0), true);
+    let landing = body(&mut simulation).at + Vector::new(0.0, 0.0, 5.0);
+    body(&mut simulation).at = landing + Vector::new(0.0, 0.0, 1.0);
     simulation.step(&[]).expect("healthy");
     assert_eq!(simulation.contact_patches(), []);
-    body(&mut simulation).set_translation(landing, true);
+    body(&mut simulation).at = landing;
     run(&mut simulation, 0.5);
     assert_eq!(patch(&simulation).touched, TouchedSurface::Stairs);
 
     // Without its joints the tail can fall onto the head.
     let (mut plan, _) = weightless(3);
     plan.body.joints.clear();
-    let mut simulation = Simulation::new(&plan);
-    let tail = simulation.parts[2];
-    for part in simulation.parts.clone() {
-        let body = &mut simulation.physics_mut().bodies[part];
-        let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
-        body.set_translation(above, true);
-    }
-    let over = simulation.physics.bodies[simulation.parts[0]].translation();
-    let body = &mut simulation.physics_mut().bodies[tail];
-    body.set_translation(over + Vector::new(0.0, 0.0, 1.1), true);
-    body.set_linvel(Vector::new(0.0, 0.5, -2.0), true);
-    // A force presses the tail on, because an impact is over before the last substep.
-    simulation.physics_mut().bodies[tail].add_force(Vector::new(0.0, 0.0, -50.0), true);
+    let mut simulation = lifted(&plan);
+    let over = simulation.parts()[0].at;
+    simulation.change_parts(|(index, part)| {
+        if index == 2 {
+            part.at = over + Vector::new(0.0, 0.0, 1.1);
+            part.linear = Vector::new(0.0, 0.5, -2.0);
+            // A force presses the tail on, because an impact is over before the last substep.
+            part.force_n.z = -50.0;
+        }
+    });
     for _ in 0..8 {
         simulation.step(&[]).expect("healthy");
         if let [patch] = simulation.contact_patches()[..] {

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::rng::{Purpose, stream};
-use crate::world::{Elasticity, Mount, SOFTEST_M4_S2, STIFFEST_M4_S2, modulus_at_pa};
+use crate::world::{Elasticity, Mount, Rotation, SOFTEST_M4_S2, STIFFEST_M4_S2, modulus_at_pa};
 
 /// Draws a number between two positive ones, with the same chance for each order of magnitude.
 fn between(rng: &mut ChaCha8Rng, least: f32, most: f32) -> f32 {
@@ -111,7 +111,7 @@ fn step_random_snakes(kind: SnakeKind, numbers: std::ops::Range<u32>) -> u32 {
         let mut rng = stream(1, 0, number, Purpose::Perturbation);
         let plan = random_plan(kind, &mut rng, &mut stream(1, 1, number, Purpose::Perturbation));
         let mut simulation = Simulation::new(&plan);
-        assert!(simulation.lanes.is_some());
+        assert!(simulation.common().is_some());
         for step in 0..12 {
             let torques: Vec<JointTorque> = plan
                 .body

@@ -26,12 +26,7 @@ fn air_takes_a_spin_at_its_rate() {
             let seconds = (60.0 / damping_per_s).round().max(1.0) / 60.0;
             run_with(&mut simulation, JointTorque::default(), seconds);
             let expected = libm::expf(-damping_per_s * seconds);
-            assert_close(
-                simulation.physics.bodies[simulation.parts[0]].angvel().y,
-                expected,
-                0.02,
-                case,
-            );
+            assert_close(simulation.parts()[0].angular.y, expected, 0.02, case);
         }
     });
 }
@@ -60,10 +55,10 @@ fn a_damping_surface_slows_a_limb_at_its_rate() {
             let mut simulation =
                 Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
             run(&mut simulation, 0.5);
-            body(&mut simulation).set_linvel(Vector::new(0.0, 4.0, 0.0), true);
+            body(&mut simulation).linear = Vector::new(0.0, 4.0, 0.0);
             run(&mut simulation, 0.2);
             let expected = 4.0 * libm::expf(-dampen_per_s * 0.2);
-            assert_close(body(&mut simulation).linvel().y, expected, 0.02, case);
+            assert_close(body(&mut simulation).linear.y, expected, 0.02, case);
         }
     });
 }
@@ -76,9 +71,9 @@ fn on_a_damping_slope_a_limb_slides_at_gravity_over_damping() {
             let mut simulation =
                 Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
             run(&mut simulation, 0.5);
-            simulation.physics.gravity = Vector::new(0.0, -0.5, -9.81);
+            body(&mut simulation).force_n.y = -0.5 * simulation.body().mass_kg();
             run(&mut simulation, 4.0);
-            assert_close(-body(&mut simulation).linvel().y, 0.5 / dampen_per_s, 0.02, case);
+            assert_close(-body(&mut simulation).linear.y, 0.5 / dampen_per_s, 0.02, case);
         }
     });
 }
@@ -95,26 +90,19 @@ fn floating_pair(
     plan.physics = PhysicsSettings { gravity_m_s2: 0.0, ..physics.clone() };
     plan.body.joints[0].damping_nms_per_rad = damping_nms_per_rad;
     plan.body.joints[0].twist_limit_rad = 3.0;
-    let mut simulation = Simulation::new(&plan);
-    for limb in simulation.parts.clone() {
-        let body = &mut simulation.physics_mut().bodies[limb];
-        let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
-        body.set_translation(above, true);
-    }
-    simulation
+    lifted(&plan)
 }
 
 fn run_with(simulation: &mut Simulation, torque: JointTorque, seconds: f32) {
-    let steps = (seconds / simulation.physics.integration_parameters.dt).round() as u32;
+    let steps = (seconds / simulation.plan.physics.step_s()).round() as u32;
     (0..steps).for_each(|_| simulation.step(&[torque]).expect("healthy"));
 }
 
 /// Makes the limbs of a pair spin in opposite directions about the long axis, at this rate in rad/s.
 fn twist(simulation: &mut Simulation, rate_rad_s: f32) {
-    for (limb, sign) in simulation.parts.clone().into_iter().zip([1.0, -1.0]) {
-        let spin = Vector::new(0.0, sign * rate_rad_s, 0.0);
-        simulation.physics_mut().bodies[limb].set_angvel(spin, true);
-    }
+    simulation.change_parts(|(index, part)| {
+        part.angular.y = if index == 0 { rate_rad_s } else { -rate_rad_s };
+    });
 }
 
 in_both_engines!(joint_damping_slows_a_joint_at_its_rate);
@@ -124,7 +112,7 @@ fn joint_damping_slows_a_joint_at_its_rate() {
             let mut simulation = floating_pair(physics, 0.0, damping);
             twist(&mut simulation, 1.0);
             run_with(&mut simulation, JointTorque::default(), 0.1);
-            let found = simulation.physics.bodies[simulation.parts[0]].angvel().y;
+            let found = simulation.parts()[0].angular.y;
             // The joint rate is 2 w and the torque on each limb c * 2 w, so w decays with exp(-2 c t / I).
             let expected = libm::expf(-2.0 * damping * 0.1 / (5.0 / 6.0));
             assert_close(found, expected, 0.02, case);
@@ -149,7 +137,7 @@ fn on_springs(physics: &PhysicsSettings, surface: Surface, seconds: f32) -> Vec<
     let steps = (seconds * physics.steps_per_s as f32).round() as u32;
     let step = |_| {
         simulation.step(&[]).expect("healthy");
-        body(&mut simulation).translation().z - 0.5
+        body(&mut simulation).at.z - 0.5
     };
     (0..steps).map(step).collect()
 }
@@ -211,10 +199,10 @@ fn a_hard_contact_corrects_its_share_of_a_penetration_in_a_sixtieth_of_a_second(
                 Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
             // Rapier corrects a penetration at 3 m/s at most.
             let sunk_m = 0.035;
-            let place = body(&mut simulation).translation() - Vector::new(0.0, 0.0, sunk_m);
-            body(&mut simulation).set_translation(place, true);
+            let place = body(&mut simulation).at - Vector::new(0.0, 0.0, sunk_m);
+            body(&mut simulation).at = place;
             run(&mut simulation, 2.0 / 60.0);
-            let left_m = 0.5 - body(&mut simulation).translation().z;
+            let left_m = 0.5 - body(&mut simulation).at.z;
             let expected_m = sunk_m * (1.0 - soft_erp) * (1.0 - soft_erp);
             assert_close(left_m, expected_m, 0.02, case);
         }
@@ -228,12 +216,9 @@ fn a_pushed_block_creeps_at_slip_times_force() {
             let surface = Surface { slip_m_s_per_n, ..Default::default() };
             let mut simulation =
                 Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
-            for _ in 0..5 * physics.steps_per_s {
-                body(&mut simulation).reset_forces(true);
-                body(&mut simulation).add_force(Vector::new(0.0, 20.0, 0.0), true);
-                simulation.step(&[]).expect("healthy");
-            }
-            assert_close(body(&mut simulation).linvel().y, slip_m_s_per_n * 20.0, 0.02, case);
+            body(&mut simulation).force_n.y = 20.0;
+            run(&mut simulation, 5.0);
+            assert_close(body(&mut simulation).linear.y, slip_m_s_per_n * 20.0, 0.02, case);
         }
     });
 }
@@ -245,12 +230,12 @@ fn an_impact_bounces_from_the_bounce_velocity_on() {
             let surface = Surface { bounce: 0.8, bounce_velocity_m_s, ..Default::default() };
             let mut simulation =
                 Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
-            let above = body(&mut simulation).translation() + Vector::new(0.0, 0.0, 1.0);
-            body(&mut simulation).set_translation(above, true);
+            let above = body(&mut simulation).at + Vector::new(0.0, 0.0, 1.0);
+            body(&mut simulation).at = above;
             let steps = (0.8 * physics.steps_per_s as f32) as u32;
             let speeds = (0..steps).map(|_| {
                 simulation.step(&[]).expect("healthy");
-                body(&mut simulation).linvel().z
+                body(&mut simulation).linear.z
             });
             speeds.fold(0.0, f32::max)
         };

@@ -1,7 +1,5 @@
 //! Soft limbs compared with the theory of beams.
 
-use rapier3d::prelude::*;
-
 use super::*;
 use crate::world::{Elasticity, STIFFEST_M4_S2, SpringPlan, modulus_at_pa};
 
@@ -27,17 +25,6 @@ fn beam(bending_nm2: f32, parts: u32, damping_ratio: f32) -> WorldPlan {
     plan
 }
 
-/// Returns the world of a beam, lifted to a height of 30 m.
-fn lifted(plan: &WorldPlan) -> Simulation {
-    let mut simulation = Simulation::new(plan);
-    for part in simulation.parts.clone() {
-        let body = &mut simulation.physics_mut().bodies[part];
-        let above = body.translation() + Vector::new(0.0, 0.0, 30.0);
-        body.set_translation(above, true);
-    }
-    simulation
-}
-
 /// Returns the world of a beam whose front face is clamped, 30 m above the ground. Part 0 is a wall, to which a spring holds the beam that is
 /// as stiff as half a piece of the beam.
 fn clamped(plan: &WorldPlan) -> Simulation {
@@ -57,20 +44,19 @@ fn clamped(plan: &WorldPlan) -> Simulation {
     springs.insert(0, root);
     parts.insert(0, parts[0].clone());
     let mut simulation = lifted(&plan);
-    let wall = simulation.parts[0];
-    simulation.physics_mut().bodies[wall].set_body_type(RigidBodyType::Fixed, true);
+    simulation.change_parts(|(index, part)| part.is_held = index == 0);
     simulation
 }
 
 /// Returns the place of the middle of a beam's rear face, in m.
 fn tip(simulation: &Simulation) -> Vector {
-    let last = simulation.parts.len() - 1;
-    let half_m = simulation.body.parts[last].length_m / 2.0;
-    *simulation.physics.bodies[simulation.parts[last]].position() * Vector::new(0.0, -half_m, 0.0)
+    let last = simulation.parts().len() - 1;
+    let half_m = simulation.body().parts[last].length_m / 2.0;
+    simulation.parts()[last].pose() * Vector::new(0.0, -half_m, 0.0)
 }
 
 fn rest(simulation: &mut Simulation) {
-    let step_s = simulation.physics.integration_parameters.dt;
+    let step_s = simulation.plan.physics.step_s();
     (0..(20.0 / step_s) as u32).for_each(|_| simulation.advance());
 }
 
@@ -80,8 +66,13 @@ fn under_a_load(plan: &WorldPlan, bending_nm2: f32, axis: Vector) -> f32 {
     let mut simulation = clamped(plan);
     let before = tip(&simulation);
     let load_n = 0.04 * LENGTH_M * 3.0 * bending_nm2 / LENGTH_CUBED;
-    let last = *simulation.parts.last().expect("parts");
-    simulation.physics_mut().bodies[last].add_force_at_point(axis * -load_n, before, true);
+    let last = simulation.parts().len() - 1;
+    simulation.change_parts(|(index, part)| {
+        if index == last {
+            part.force_n = axis * -load_n;
+            part.torque_nm = (before - part.at).cross(part.force_n);
+        }
+    });
     rest(&mut simulation);
     let parts = plan.body.parts.len() as f32;
     let chain_m = load_n * LENGTH_CUBED / (3.0 * bending_nm2) * (1.0 + 0.5 / (parts * parts));
@@ -134,11 +125,10 @@ fn a_clamped_limb_bends_like_a_beam() {
 /// energy at the start. The kick turns both ends in opposite directions: about the x axis for bending, about the y axis for torsion.
 fn after_a_kick(plan: &WorldPlan, is_torsion: bool) -> [f64; 2] {
     let mut simulation = lifted(plan);
-    let [front, rear] = [simulation.parts[0], simulation.parts[simulation.parts.len() - 1]];
-    let bodies = &mut simulation.physics_mut().bodies;
-    for (part, side) in [(front, 1.0), (rear, -1.0)] {
-        let axis = if is_torsion { Vector::Y } else { Vector::X };
-        bodies[part].set_angvel(axis * (side * 0.8), true);
+    let last = simulation.parts().len() - 1;
+    let axis = if is_torsion { Vector::Y } else { Vector::X };
+    for (part, side) in [(0, 1.0), (last, -1.0)] {
+        simulation.engine.parts_mut()[part].angular = axis * (side * 0.8);
     }
     let start_j = simulation.mechanical_energy_j();
     let mut most_j = 0.0_f64;

@@ -2,10 +2,8 @@
 
 use std::f32::consts::{FRAC_1_SQRT_2, TAU};
 
-use rapier3d::prelude::*;
-
 use super::*;
-use crate::world::Mount;
+use crate::world::{Mount, Rotation};
 
 /// Returns a mount that turns the rear of its child downwards.
 fn below(at_m: Vector) -> Mount {
@@ -28,17 +26,10 @@ fn tree(mounts: &[Mount]) -> WorldPlan {
     plan
 }
 
-/// Returns the world of a tree, 30 m higher. `is_held` tells whether its first part is held in its place.
-fn lifted(plan: &WorldPlan, is_held: bool) -> Simulation {
-    let mut simulation = Simulation::new(plan);
-    for part in simulation.parts.clone() {
-        let body = &mut simulation.physics_mut().bodies[part];
-        body.set_translation(body.translation() + Vector::new(0.0, 0.0, 30.0), true);
-    }
-    if is_held {
-        let first = simulation.parts[0];
-        simulation.physics_mut().bodies[first].set_body_type(RigidBodyType::Fixed, true);
-    }
+/// Returns the world of a tree, 30 m higher, whose first part is held in its place.
+fn hanging(plan: &WorldPlan) -> Simulation {
+    let mut simulation = lifted(plan);
+    simulation.change_parts(|(index, part)| part.is_held = index == 0);
     simulation
 }
 
@@ -50,7 +41,7 @@ fn a_hanging_arm_swings_with_the_period_of_a_pendulum() {
     if let Some(mount) = &mut plan.body.joints[0].mount {
         mount.start_rad = [start_rad, 0.0];
     }
-    let mut simulation = lifted(&plan, true);
+    let mut simulation = hanging(&plan);
     let mut bends_rad = vec![start_rad];
     for _ in 0..240 * 6 {
         simulation.step(&[JointTorque::default()]).expect("healthy");
@@ -64,7 +55,7 @@ fn a_hanging_arm_swings_with_the_period_of_a_pendulum() {
     });
     let crossings_s: Vec<f32> = crossings_s.collect();
     // A box of 1 m by 2 m by 1 m turns about the middle of its end; a swing of 0.1 rad takes 0.06 % longer than the smallest.
-    let inertia_m2 = (4.0 + 1.0) / 12.0 + 1.0;
+    let inertia_m2: f32 = (4.0 + 1.0) / 12.0 + 1.0;
     let expected_s = TAU * (inertia_m2 / 9.81).sqrt() * (1.0 + start_rad * start_rad / 16.0);
     let found_s = crossings_s[4] - crossings_s[0];
     assert!((found_s / (2.0 * expected_s) - 1.0).abs() < 0.005, "{found_s} s for two periods");
@@ -78,7 +69,7 @@ fn a_torque_twists_an_arm_about_its_own_length() {
     for side in [1.0, -1.0] {
         let mut plan = tree(&[beside(Vector::new(0.5 * side, 0.3, 0.1), side)]);
         plan.physics.gravity_m_s2 = 0.0;
-        let mut simulation = lifted(&plan, true);
+        let mut simulation = hanging(&plan);
         for _ in 0..30 {
             simulation.step(&[JointTorque { bend_nm: 0.0, twist_nm: 2.0 }]).expect("healthy");
         }
@@ -100,7 +91,7 @@ fn an_arm_stops_at_the_limits_of_its_joint() {
         let mut plan = tree(&[beside(Vector::new(0.5, -0.2, 0.3), 1.0)]);
         plan.physics.gravity_m_s2 = 0.0;
         plan.body.joints[0].damping_nms_per_rad = 4.0;
-        let mut simulation = lifted(&plan, true);
+        let mut simulation = hanging(&plan);
         for _ in 0..300 {
             simulation.step(&[JointTorque { bend_nm, twist_nm }]).expect("healthy");
         }
@@ -126,20 +117,18 @@ fn torques_between_parts_of_a_tree_leave_its_momentum_as_it_is() {
     // The last arm is on another arm.
     plan.body.joints[3].parent = 1;
     plan.physics.gravity_m_s2 = 0.0;
-    let mut simulation = lifted(&plan, false);
+    let mut simulation = lifted(&plan);
     let torques: Vec<JointTorque> = (0..4)
         .map(|joint| JointTorque { bend_nm: 3.0 - joint as f32, twist_nm: joint as f32 - 1.0 })
         .collect();
     for _ in 0..30 {
         simulation.step(&torques).expect("healthy");
     }
-    let (mut momentum, mut turning, mut turned) = (Vector::ZERO, Vector::ZERO, 0.0);
-    for &part in &simulation.parts {
-        let body = &simulation.physics.bodies[part];
-        let rate = body.rotation().inverse() * body.angvel();
-        let spin = *body.rotation() * (Vector::new(25.0, 10.0, 25.0) / 12.0 * rate);
-        momentum += body.linvel() * body.mass();
-        turning += spin + body.translation().cross(body.linvel() * body.mass());
+    let (momentum, mut turning, mut turned) = (momentum(&simulation), Vector::ZERO, 0.0);
+    for (part, plan) in simulation.parts().iter().zip(&simulation.body().parts) {
+        let rate = part.turn.inverse() * part.angular;
+        let spin = part.turn * (Vector::new(25.0, 10.0, 25.0) / 12.0 * rate);
+        turning += spin + part.at.cross(part.linear * plan.mass_kg());
         turned += spin.length();
     }
     assert!(turned > 1.0, "the parts turn: {turned} kg m²/s");

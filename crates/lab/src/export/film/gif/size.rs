@@ -1,9 +1,13 @@
 //! Choice of the size and the frame rate of a GIF, so that its file is small enough for messages and web pages.
 
-/// Maximum size of a GIF whose size or frame rate was not ordered, in bytes.
-pub const MOST_BYTES: u64 = 8_000_000;
-/// Maximum estimate of such a GIF's size, in bytes. The file may turn out somewhat larger.
-pub const ESTIMATED_BYTES: u64 = 7_000_000;
+/// Maximum size of a GIF, in MB (a million bytes), unless another one is ordered.
+pub const MOST_MB: f64 = 8.0;
+
+/// Returns the maximum estimate of a GIF's size, in bytes, from its maximum size. The file may turn out somewhat larger.
+pub const fn most_estimated(most_bytes: u64) -> u64 {
+    most_bytes / 8 * 7
+}
+
 /// Usual number of bytes for a pixel of a frame, before it is measured.
 const USUAL_BYTES_PER_PIXEL: f64 = 0.3;
 
@@ -35,15 +39,21 @@ pub struct GifChoice {
 #[derive(Debug, Clone)]
 pub struct GifChoices {
     left: Vec<GifChoice>,
+    /// Maximum size of the file, in bytes.
+    most_bytes: u64,
     /// Duration of the film, in seconds.
     duration_s: f64,
     bytes_per_pixel: f64,
 }
 
 impl GifChoices {
-    /// Lists the choices for a film that lasts `duration_s` seconds. Only the ordered size or frame rate is left if the film may not be
-    /// smaller or slower.
-    pub fn new(ordered: GifChoice, duration_s: f64, (smaller, slower): (bool, bool)) -> Self {
+    /// Lists the choices for a film that lasts `duration_s` seconds and whose file has at most `most_bytes`. Only the ordered size or frame
+    /// rate is left if the film may not be smaller or slower.
+    pub fn new(
+        ordered: GifChoice,
+        (duration_s, most_bytes): (f64, u64),
+        (smaller, slower): (bool, bool),
+    ) -> Self {
         let (width, height) = ordered.size;
         let scaled = |pixels: u32, share: f64| libm::round(f64::from(pixels) * share) as u32;
         let choice = |(share, fps): (f64, u32)| GifChoice {
@@ -56,18 +66,18 @@ impl GifChoices {
         };
         let mut left: Vec<GifChoice> = QUALITIES.into_iter().map(choice).collect();
         left.dedup();
-        Self { left, duration_s, bytes_per_pixel: USUAL_BYTES_PER_PIXEL }
+        Self { left, most_bytes, duration_s, bytes_per_pixel: USUAL_BYTES_PER_PIXEL }
     }
 
     /// Takes the best choice whose file is expected to be small enough, or else the last one, and drops the better ones. Returns it with
     /// the maximum size of its file in bytes, which the last choice does not have; `None` if no choice is left.
     pub fn take(&mut self) -> Option<(GifChoice, Option<u64>)> {
-        let is_small =
-            |of: &GifChoice| self.pixels(*of) * self.bytes_per_pixel <= ESTIMATED_BYTES as f64;
+        let most = most_estimated(self.most_bytes) as f64;
+        let is_small = |of: &GifChoice| self.pixels(*of) * self.bytes_per_pixel <= most;
         let worst = self.left.len().checked_sub(1)?;
         let place = self.left.iter().position(is_small).unwrap_or(worst);
         let taken = self.left.drain(..=place).next_back()?;
-        Some((taken, (!self.left.is_empty()).then_some(MOST_BYTES)))
+        Some((taken, (!self.left.is_empty()).then_some(self.most_bytes)))
     }
 
     /// Notes that the file of a choice would have this many bytes.
@@ -90,12 +100,12 @@ mod tests {
 
     #[test]
     fn a3_a_gif_gets_smaller_and_slower_until_it_is_small_enough() {
-        let mut choices = GifChoices::new(ORDERED, 12.0, (true, true));
+        let mut choices = GifChoices::new(ORDERED, (12.0, 8_000_000), (true, true));
         // As many bytes for a pixel as measured in a film that follows a climber.
         choices.bytes_per_pixel = 0.35;
         let (first, most) = choices.take().expect("a choice");
-        assert_eq!(most, Some(MOST_BYTES));
-        assert!(choices.pixels(first) * 0.35 <= ESTIMATED_BYTES as f64, "{first:?}");
+        assert_eq!(most, Some(8_000_000));
+        assert!(choices.pixels(first) * 0.35 <= 7_000_000.0, "{first:?}");
         assert!(first.size.0 >= 448 && first.fps >= 12, "{first:?} is needlessly poor");
         // The choices that were taken do not come again, and the last one has no limit.
         choices.learn(first, 90_000_000);
@@ -105,11 +115,20 @@ mod tests {
 
     #[test]
     fn a3_an_ordered_size_or_rate_is_kept() {
-        let of = |allowed| GifChoices::new(ORDERED, 12.0, allowed).left;
+        let of = |allowed| GifChoices::new(ORDERED, (12.0, 8_000_000), allowed).left;
         let sizes = of((true, false));
         assert!(sizes.iter().all(|choice| choice.fps == 20) && sizes.len() > 4, "{sizes:?}");
         let rates = of((false, true));
         assert!(rates.iter().all(|choice| choice.size == (640, 360)) && rates.len() > 3);
         assert_eq!(of((false, false)), [ORDERED]);
+    }
+
+    #[test]
+    fn a_gif_for_messages_begins_with_a_size_that_two_megabytes_hold() {
+        // A climb of 25 s, twice as fast.
+        let mut choices = GifChoices::new(ORDERED, (12.5, 2_000_000), (true, true));
+        let (first, most) = choices.take().expect("a choice");
+        assert_eq!((first, most), (GifChoice { size: (320, 180), fps: 8 }, Some(2_000_000)));
+        assert!(choices.pixels(first) * USUAL_BYTES_PER_PIXEL <= 1_750_000.0);
     }
 }

@@ -7,14 +7,8 @@
 use rapier3d::geometry::{ContactPair, NEW_CONTACT_BIT};
 use rapier3d::prelude::*;
 
-use super::contact::other_collider;
-
-/// Velocity of a limb before the step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct LimbVelocity {
-    pub linear: Vector,
-    pub angular: Vector,
-}
+use crate::world::contact::other_collider;
+use crate::world::engine::PartState;
 
 /// A corner of a limb that bounces in this step.
 struct BouncingCorner {
@@ -32,11 +26,7 @@ struct BouncingCorner {
 const ROUNDS: u32 = 16;
 
 /// Repeats the engine's restitution of a limb's contacts with the world until all corners agree.
-pub(super) fn finish_bounce(
-    physics: &mut PhysicsWorld,
-    limb: RigidBodyHandle,
-    before: LimbVelocity,
-) {
+pub(super) fn finish_bounce(physics: &mut PhysicsWorld, limb: RigidBodyHandle, before: &PartState) {
     let body = &physics.bodies[limb];
     let collider = body.colliders()[0];
     let pose = *body.position();
@@ -45,7 +35,7 @@ pub(super) fn finish_bounce(
         let owner = physics.colliders[other_collider(pair, collider)].parent();
         let is_world = owner.is_none_or(|owner| physics.bodies[owner].mass() == 0.0);
         let pair = is_world.then_some(pair);
-        pair.into_iter().flat_map(move |pair| bouncing(pair, is_first, pose, before))
+        pair.into_iter().flat_map(move |pair| bouncing(pair, is_first, pose, *before))
     });
     let mut corners: Vec<BouncingCorner> = corners.collect();
     if corners.is_empty() {
@@ -76,7 +66,7 @@ fn bouncing(
     pair: &ContactPair,
     limb_is_first: bool,
     pose: Pose,
-    before: LimbVelocity,
+    before: PartState,
 ) -> impl Iterator<Item = BouncingCorner> + '_ {
     pair.solver_manifolds().iter().filter(|manifold| manifold.data.restitution > 0.0).flat_map(
         move |manifold| {

@@ -5,7 +5,7 @@ use rapier3d::prelude::*;
 use crate::world::WorldPlan;
 use crate::world::contact::{ContactLaws, joint_coefficients};
 use crate::world::surface::ContactLaw;
-use crate::world::{BodyPlan, JointPlan, PartPlan, PhysicsWorld, SpringPlan, StairSolid, Surface};
+use crate::world::{BodyPlan, JointPlan, PhysicsWorld, SpringPlan, StairSolid, Surface};
 
 /// Gives the collider of the ground or of a step its material.
 fn material(collider: ColliderBuilder, surface: &Surface, law: &ContactLaw) -> ColliderBuilder {
@@ -49,41 +49,6 @@ pub(super) fn insert_stairs(physics: &mut PhysicsWorld, plan: &WorldPlan, law: &
     for StairSolid { pose, half_m, .. } in plan.stairs.solids() {
         let shape = ColliderBuilder::cuboid(half_m.x, half_m.y, half_m.z).position(pose);
         physics.insert_collider(material(shape, &plan.surface, law), None);
-    }
-}
-
-impl WorldPlan {
-    /// Returns the poses of the parts before the first step: a straight row that lies on the ground, head first, or the tree of a
-    /// branching body.
-    pub fn start_poses(&self) -> Vec<Pose> {
-        let body = &self.body;
-        let middle = Vector::new(self.start_x_m, self.start_y_m, 0.0);
-        let (sin, cos) = libm::sincosf(self.start_turn_rad);
-        let (half_sin, half_cos) = libm::sincosf(self.start_turn_rad / 2.0);
-        let turn = Rotation::from_xyzw(0.0, 0.0, half_sin, half_cos);
-        let half_length_m = body.length_m() / 2.0;
-        if body.is_branching() {
-            let front = Vector::new(0.0, half_length_m, 0.0);
-            let place = |pose: Pose| {
-                Pose::from_parts(middle + turn * (pose.translation + front), turn * pose.rotation)
-            };
-            return body.rest_poses().into_iter().map(place).collect();
-        }
-        let axis_z_m = body.axis_height_m();
-        let mut front_y_m = self.start_y_m + half_length_m;
-        let place = |part: &PartPlan| {
-            let straight_y_m = front_y_m - part.length_m / 2.0;
-            front_y_m -= part.length_m;
-            let centre = if self.start_turn_rad == 0.0 {
-                // Computed directly, because the detour over the middle of the snake would change the bits by rounding.
-                Vector::new(self.start_x_m, straight_y_m, axis_z_m)
-            } else {
-                let along_m = straight_y_m - self.start_y_m;
-                middle + Vector::new(-sin * along_m, cos * along_m, axis_z_m)
-            };
-            Pose::from_parts(centre, turn)
-        };
-        body.parts.iter().map(place).collect()
     }
 }
 
