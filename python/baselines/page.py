@@ -17,6 +17,7 @@ from worlds import CLASSES, ROOT, SEEDS, WORLDS, stored
 
 Row = dict[str, Any]
 
+RUNS, PAGE = ROOT / "assets/results/baselines.jsonl", ROOT / "docs/baselines.md"
 BEGIN, END = "<!-- begin: page.py -->", "<!-- end: page.py -->"
 NAMES = {
     "cma-es": "CMA-ES, gait (ours)",
@@ -207,17 +208,22 @@ def tables(rows: list[Row]) -> str:
     return "\n\n".join(parts)
 
 
+def with_tables(text: str, rows: list[dict[str, Any]]) -> str:
+    """The text of the page with the tables of these runs."""
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    return f"{before}{BEGIN}\n\n{tables(rows)}\n\n{END}{after}"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--runs", type=Path, default=ROOT / "assets/results/baselines.jsonl")
-    parser.add_argument("--page", type=Path, default=ROOT / "docs/baselines.md")
+    parser.add_argument("--runs", type=Path, default=RUNS)
+    parser.add_argument("--page", type=Path, default=PAGE)
     args = parser.parse_args()
     rows = stored(args.runs)
     if not rows:
         parser.error(f"{args.runs} has no runs; allowed: a file that run.py has begun")
-    before, _, rest = args.page.read_text(encoding="utf-8").partition(BEGIN)
-    _, _, after = rest.partition(END)
-    args.page.write_text(f"{before}{BEGIN}\n\n{tables(rows)}\n\n{END}{after}", encoding="utf-8")
+    args.page.write_text(with_tables(args.page.read_text(encoding="utf-8"), rows), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
     python python/baselines/run.py
 
 Each finished run is appended to `assets/results/baselines.jsonl` at once, and a command that was interrupted continues
-there. `page.py` writes the tables of `docs/baselines.md`.
+there. At the end the tables of `docs/baselines.md` are written from the file, as `page.py` does alone.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import genomes
-from worlds import ROOT, SEEDS, WORLDS, by_class, combined_hash, stored
+import page
+from worlds import SEEDS, WORLDS, by_class, combined_hash, stored
 
 from snakes_and_stairs import ENGINE_VERSION
 
@@ -102,7 +103,7 @@ def run(method: str, world: str, seed: int, budget_s: float, snakes: str) -> dic
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--snakes", default="snakes", help="the program, whose exam has the held-out stairs")
-    parser.add_argument("--out", type=Path, default=ROOT / "assets/results/baselines.jsonl")
+    parser.add_argument("--out", type=Path, default=page.RUNS, help="its tables are written only from the default file")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=METHODS)
     parser.add_argument("--worlds", nargs="+", choices=WORLDS, default=WORLDS)
     parser.add_argument("--first-seed", type=int, default=FIRST_SEED)
@@ -128,6 +129,8 @@ def main() -> None:
                     f" held-out {sum(row['held_out'].values())} of 60, {row['cpu_s']:.0f} s",
                     flush=True,
                 )
+    if args.out == page.RUNS:
+        page.PAGE.write_text(page.with_tables(page.PAGE.read_text(encoding="utf-8"), stored(page.RUNS)), encoding="utf-8")
 
 
 if __name__ == "__main__":

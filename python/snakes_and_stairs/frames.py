@@ -43,17 +43,19 @@ def evaluations_frame(evaluations: Evaluations) -> pandas.DataFrame:
 
 
 def run_frame(folder: Union[str, os.PathLike[str]]) -> pandas.DataFrame:
-    """A row per generation of a run, with the names of its lines of JSON: evaluations, disqualified, on the landing, statistics of the
-    fitness, its hash."""
-    return _pandas().DataFrame(_core.load_run(folder)["generations"])
+    """A row per generation of a run, with the run's seed and the names of its lines of JSON: evaluations, disqualified, on the landing,
+    statistics of the fitness, its hash."""
+    run = _core.load_run(folder)
+    return _pandas().DataFrame([{"seed": run["seed"], **line} for line in run["generations"]])
 
 
 def champions_frame(folder: Union[str, os.PathLike[str]]) -> pandas.DataFrame:
-    """A row per saved generation of a run: what its champion achieved."""
+    """A row per saved generation of a run, with the run's seed: what its champion achieved."""
     rows = []
-    for entry in _core.load_run(folder)["champions"]:
+    run = _core.load_run(folder)
+    for entry in run["champions"]:
         recorded = entry["champion"].to_dict()["recorded"]
-        row = {"generation": entry["generation"]}
+        row = {"seed": run["seed"], "generation": entry["generation"]}
         for name, value in recorded.items():
             row.update(value if isinstance(value, dict) else {name: value})
         rows.append(row)

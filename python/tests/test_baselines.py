@@ -95,6 +95,11 @@ def rows_of(fitness):
     ]
 
 
+def test_r13_the_page_has_the_tables_of_the_stored_runs():
+    text = page.PAGE.read_text(encoding="utf-8")
+    assert page.with_tables(text, worlds.stored(page.RUNS)) == text
+
+
 def test_r13_the_page_says_when_a_baseline_wins_and_only_then():
     low, high = [float(i) for i in range(10)], [20.0 + i for i in range(10)]
     assert "**PPO beats our CMA-ES in `climb`, fitness" in page.tables(rows_of({"cma-es": low, "ppo": high}))

@@ -87,6 +87,12 @@ def test_a_champion_that_no_row_reaches_is_warned_of(tmp_path):
         problem.genome_of(path)
 
 
+def test_f9_a_name_that_acts_on_a_terminal_is_escaped_in_an_error(tmp_path):
+    with pytest.raises(OSError, match="cannot be read") as error:
+        sns.load_champion(tmp_path / "\x1b[31mred\u202e.ron")
+    assert "\\u001b[31mred\\u202e.ron" in str(error.value) and "\x1b" not in str(error.value)
+
+
 def test_files_that_cannot_be_read_are_refused_in_one_line(tmp_path):
     with pytest.raises(OSError, match="missing.ron: cannot be read"):
         sns.load_champion(str(tmp_path / "missing.ron"))

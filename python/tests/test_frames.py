@@ -32,6 +32,7 @@ def test_a_run_is_a_dictionary_and_a_frame(run):
     assert frame["hash"].str.fullmatch("[0-9a-f]{16}").all()
     champions = sns.champions_frame(run)
     assert len(champions) == len(loaded["champions"]) > 0
+    assert list(frame["seed"]) == [3] * generations and set(champions["seed"]) == {3}
     for entry, (_, row) in zip(loaded["champions"], champions.iterrows()):
         results = entry["champion"].evaluate()
         assert results.trace_hash[0] == row["trace_hash"]
@@ -56,6 +57,15 @@ def test_r6_a_runs_frame_has_the_names_and_values_of_its_lines_of_json(snakes, t
         for name in ("mean", "best", "median", "std", "worst"):
             assert row[name] == pytest.approx(line[name], rel=1e-5), name
     assert "first_on_landing" not in frame and frame["first_landing"].notna().any()
+
+
+def test_r9_an_exported_run_has_whole_numbers_of_seed_and_generation(snakes, run, tmp_path):
+    for ending, read in [("csv", pandas.read_csv), ("parquet", pandas.read_parquet)]:
+        path = tmp_path / f"motion.{ending}"
+        snakes("export", run, "-o", path)
+        table = read(path)
+        assert set(table["seed"]) == {3} and pandas.api.types.is_integer_dtype(table["generation"])
+        assert set(table["generation"]) == {entry["generation"] for entry in sns.load_run(run)["champions"]}
 
 
 def test_r6_a_trajectory_has_the_columns_of_an_exported_table(snakes, tmp_path):

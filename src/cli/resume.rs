@@ -40,31 +40,35 @@ fn line_of_damaged(folder: &Path, problem: &SaveError, json: bool) -> String {
 /// Describes a run in a line: its folder, the name that the user gave it, and its state.
 fn line(run: &RunSummary, json: bool) -> String {
     let RunSummary { folder, plan, finished, name, .. } = run;
-    let generations = plan.settings.evolution.generations;
     let is_stopped = run.is_stopped();
     if json {
         let line = serde_json::json!({
-            "type": "run", "folder": folder, "name": name, "generations": finished, "of": generations, "resumable": is_stopped,
+            "type": "run", "folder": folder, "name": name, "generations": finished,
+            "of": plan.settings.evolution.generations, "resumable": is_stopped,
         });
         return line.to_string();
     }
     let folder = folder.display();
     let name = name.as_ref().map(|name| format!("  \"{name}\"")).unwrap_or_default();
     let state = if is_stopped { "can be resumed" } else { "finished" };
-    format!("{folder}{name}  {finished} of {generations} generations, {state}")
+    format!("{folder}{name}  {}, {state}", run.generations_in_words())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use snakes_core::evolve::{RunPlan, Settings};
-    use snakes_core::save::ExistingRun;
     use snakes_core::save::library::{SavePlace, rename};
+    use snakes_core::save::{ExistingRun, load_preset};
     use std::path::PathBuf;
+
+    fn climb() -> Settings {
+        load_preset("climb").expect("shipped").settings
+    }
 
     /// Adds a run without finished generations, and returns its folder.
     fn add_run(saves: &SavesFolder, seed: u64) -> PathBuf {
-        let plan = RunPlan::new("test", seed, Settings::default());
+        let plan = RunPlan::new("climb", seed, climb());
         let folder = saves.of_run(&plan);
         RunSource::in_saves(saves, plan, ExistingRun::Keep).open("a test").expect("opened");
         folder
@@ -116,17 +120,17 @@ mod tests {
     }
 
     #[test]
-    fn a_listed_run_has_its_own_name_and_its_state() {
+    fn r1_a_listed_run_has_its_own_name_and_its_state() {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
         let run = add_run(&saves, 1);
         rename(&SavePlace::Run(run.clone()), "The icy one").expect("renamed");
         let runs = saves.runs();
-        let generations = Settings::default().evolution.generations;
+        let generations = climb().evolution.generations;
         assert_eq!(
             line(&runs[0], false),
             format!(
-                "{}  \"The icy one\"  0 of {generations} generations, can be resumed",
+                "{}  \"The icy one\"  0 of at most {generations} generations, can be resumed",
                 run.display()
             )
         );

@@ -18,27 +18,6 @@ fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
 }
 
 #[test]
-fn an_unknown_preset_is_refused_with_the_list_of_presets() {
-    let message = refusal(folder().path(), "--no-render --preset nosuch", 2);
-    assert_eq!(
-        message,
-        "error: --preset is \"nosuch\"; allowed: climb, report, steady, quick, panda-manual, ice, rubber, moon, mud, trampoline, thick-air, senses, mixed-stairs, q-learning, xcs, zcs, waves-by-rules, limb-neurons, neat, bodies, squishy, creatures, house, ladder, poet, generalist, or a file"
-    );
-}
-
-#[test]
-fn a_population_of_zero_is_refused() {
-    let message = refusal(folder().path(), "--no-render --population 0", 2);
-    assert_eq!(message, "error: --population is 0; allowed: 1 to 100000");
-}
-
-#[test]
-fn a_negative_duration_is_refused() {
-    let message = refusal(folder().path(), "--no-render --duration -2", 2);
-    assert_eq!(message, "error: --duration is -2; allowed: 0.1 to 600");
-}
-
-#[test]
 fn an_unknown_setting_or_a_value_out_of_range_is_refused() {
     let folder = folder();
     let message = refusal(folder.path(), "--no-render --set surface.fricton=0.8", 2);
@@ -92,13 +71,6 @@ fn wrong_values_of_render_are_refused_before_anything_is_drawn() {
 }
 
 #[test]
-fn a_seed_that_is_not_a_number_is_refused() {
-    let message = refusal(folder().path(), "--no-render --seed twelve", 2);
-    let allowed = "allowed: a whole number from 0 to 18446744073709551615";
-    assert_eq!(message, format!("error: --seed is \"twelve\"; {allowed}"));
-}
-
-#[test]
 fn an_unknown_flag_is_refused() {
     let message = refusal(folder().path(), "--no-render --polulation 3", 2);
     assert!(message.contains("--polulation"), "{message}");
@@ -110,12 +82,6 @@ fn a_missing_save_is_refused() {
     assert!(message.starts_with("error: nosuch.ron: cannot be read: "), "{message}");
 }
 
-#[test]
-fn a_folder_in_place_of_a_save_is_refused() {
-    let message = refusal(folder().path(), "replay . --no-render", 1);
-    assert!(message.starts_with("error: .: cannot be read: "), "{message}");
-}
-
 /// Returns the error of replaying a shipped champion whose file was changed by `edit`.
 fn refusal_of_save(edit: impl FnOnce(&str) -> String) -> String {
     let folder = folder();
@@ -125,12 +91,6 @@ fn refusal_of_save(edit: impl FnOnce(&str) -> String) -> String {
     let kept = fs::read_to_string(folder.path().join("save.ron")).expect("read");
     assert_eq!(kept, edited, "the file is left as it was");
     message
-}
-
-#[test]
-fn a_truncated_save_is_refused() {
-    let message = refusal_of_save(|text| text[..text.len() * 2 / 3].to_owned());
-    assert!(message.starts_with("error: save.ron: damaged or incomplete at line "), "{message}");
 }
 
 #[test]
@@ -146,20 +106,6 @@ fn a_file_of_another_kind_is_refused() {
     );
     let message = refusal_of_save(|_| "\u{7f}ELF\u{1}\u{2}".to_owned());
     assert!(message.starts_with("error: save.ron: damaged or incomplete at line 1"), "{message}");
-}
-
-#[test]
-fn a_save_of_a_newer_version_is_refused() {
-    let message = refusal_of_save(|text| text.replace("format: 5,", "format: 6,"));
-    let reason = "(a newer version of Snakes & Stairs wrote this file)";
-    assert_eq!(message, format!("error: save.ron: format is 6; allowed: 5 {reason}"));
-}
-
-#[test]
-fn a_save_of_an_older_format_is_refused() {
-    let message = refusal_of_save(|text| text.replace("format: 5,", "format: 4,"));
-    let reason = "(a version before the first release wrote this file)";
-    assert_eq!(message, format!("error: save.ron: format is 4; allowed: 5 {reason}"));
 }
 
 #[test]

@@ -49,14 +49,17 @@ fn json_lines_have_the_documented_fields() {
                 "meaning",
                 "median",
                 "on_landing",
+                "simulations",
                 "std",
                 "type",
                 "worst"
             ]
         );
-        assert_eq!(line["evaluations"], json!(8));
+        // Two candidates for champion take nine trials each.
+        assert_eq!((&line["evaluations"], &line["simulations"]), (&json!(8), &json!(26)));
     }
     let last = &lines[3];
+    assert_eq!((&last["evaluations"], &last["simulations"]), (&json!(24), &json!(78)));
     assert_eq!(last["type"], json!("done"));
     assert_eq!(last["run_hash"].as_str().map(str::len), Some(16));
     let best = lines[..3].iter().map(|line| line["best"].as_f64().expect("a number"));

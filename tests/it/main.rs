@@ -7,8 +7,10 @@ mod bodies;
 mod champions;
 #[cfg(all(feature = "cluster", target_os = "linux"))]
 mod cluster;
+mod data_page;
 mod determinism;
 mod docs;
+mod episodes;
 mod exports;
 #[cfg(feature = "studio")]
 mod features;

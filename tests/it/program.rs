@@ -12,6 +12,8 @@ pub fn snakes(folder: &Path, arguments: &str) -> Command {
     // A test must not use the display or the saves of the user who runs it.
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
     command.env("HOME", folder).env("XDG_DATA_HOME", folder.join("data"));
+    // A software driver compiles its programs for seconds. It keeps them in the home folder, which is a new one for each test.
+    command.env("MESA_SHADER_CACHE_DIR", concat!(env!("CARGO_TARGET_TMPDIR"), "/mesa"));
     command
 }
 

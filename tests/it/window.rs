@@ -20,9 +20,9 @@ mod settings;
 mod stage;
 
 use super::program::{folder, json_lines, run, stdout_of};
-use display::Studio;
+pub use display::Studio;
 use picture::{Picture, difference, is_blue, is_red};
-use places::{Area, Place};
+use places::Area;
 use std::time::Duration;
 
 /// Path of a champion in the report's world.
@@ -38,24 +38,19 @@ fn it_opens_with_a_moving_red_and_blue_snake_while_a_run_evolves() {
 }
 
 #[test]
-fn space_pauses_and_plays_the_stage() {
-    let Some(studio) = Studio::open("space", "--preset quick") else { return };
-    studio.pause_evolution();
-    studio.key("space");
-    studio.wait_for_title(", stopped");
-    let held = studio.still_picture();
-    std::thread::sleep(Duration::from_secs(1));
-    assert_eq!(difference(&held, &studio.picture()), 0, "a paused stage does not move");
-    studio.key("space");
-    studio.wait_for_title_without(", stopped");
-    studio.picture_with(|picture| difference(&held, picture) > 500);
-}
-
-#[test]
-fn keys_start_pause_and_single_step_evolution() {
+fn keys_buttons_and_the_menu_start_pause_and_single_step_evolution() {
     let Some(studio) = Studio::open("evolution-keys", "--preset quick --generations 1000") else {
         return;
     };
+    studio.wait_for_title("running");
+    studio.click_label("Pause evolution");
+    studio.wait_for_title("paused");
+    let before = studio.generations();
+    studio.click_label("One generation");
+    studio.wait_for_title(&format!("{} of 1000 generations, paused", before + 1));
+    studio.click_champion(1);
+    studio.wait_for_title("showing generation 1");
+    studio.choose("Run", "Start or pause evolution");
     studio.wait_for_title("running");
     studio.key("e");
     studio.wait_for_title("paused");
@@ -69,24 +64,8 @@ fn keys_start_pause_and_single_step_evolution() {
     studio.key("e");
     studio.wait_for_title("running");
     studio.wait_for_generations(before + 3);
-}
-
-#[test]
-fn buttons_and_champion_list_control_run_and_stage() {
-    let Some(studio) = Studio::open("buttons", "--preset quick --generations 1000") else { return };
-    studio.wait_for_title("running");
-    studio.click_label("Pause evolution");
-    studio.wait_for_title("paused");
-    let before = studio.generations();
-    studio.click_label("One generation");
-    studio.wait_for_title(&format!("{} of 1000 generations, paused", before + 1));
-    studio.click_champion(1);
-    studio.wait_for_title("showing generation 1");
-    studio.click_champion(0);
-    studio.wait_for_title("showing climber");
     studio.click_label("New run");
     studio.wait_for_title("seed 2 - ");
-    studio.wait_for_title("running");
 }
 
 /// This test opens no window, but needs the same driver: it draws pictures without a display.
@@ -194,16 +173,6 @@ fn a_first_start_shows_the_first_generation_and_then_a_better_one() {
 }
 
 #[test]
-fn what_was_chosen_stays_and_a_better_generation_is_offered() {
-    let arguments = format!("replay {REPORTS_CLIMBER} --preset quick --seed 3 --generations 1000");
-    let Some(studio) = Studio::open("chosen", &arguments) else { return };
-    studio.wait_for_generations(2);
-    assert!(studio.title().ends_with("showing first-climber"), "{}", studio.title());
-    studio.click_label("Show it");
-    studio.wait_for_title("showing generation ");
-}
-
-#[test]
 fn a_second_start_opens_the_stopped_run_with_continue_and_new_run() {
     let folder = folder();
     let arguments =
@@ -219,37 +188,6 @@ fn a_second_start_opens_the_stopped_run_with_continue_and_new_run() {
     studio.click_label("New run");
     studio.wait_for_title("seed 2 - ");
     studio.wait_for_title("running");
-}
-
-#[test]
-fn the_quit_key_ends_the_program_with_success() {
-    let Some(studio) = Studio::open("quit", "--preset quick") else { return };
-    assert_eq!(studio.quit(), Some(0));
-}
-
-#[test]
-fn a_saved_champion_opens_in_the_studio() {
-    let arguments = format!("replay {REPORTS_CLIMBER} --preset quick");
-    let Some(studio) = Studio::open("replay", &arguments) else {
-        return;
-    };
-    studio.wait_for_title("showing first-climber");
-}
-
-#[test]
-fn a_champion_of_another_engine_is_shown_as_recorded_and_can_be_simulated() {
-    let folder = folder();
-    let save = folder.path().join("elsewhere.ron");
-    let text = include_str!("../../saves/first-climber.ron").replace("engine: 3", "engine: 1");
-    std::fs::write(&save, text).expect("written");
-    let arguments = format!("replay {} --preset quick", save.display());
-    let Some(studio) = Studio::open("recorded", &arguments) else { return };
-    studio.wait_for_title("showing elsewhere as recorded");
-    studio.pause_evolution();
-    studio.click_label("Simulate again");
-    studio.wait_for_title_without("as recorded");
-    studio.click_label("As recorded");
-    studio.wait_for_title("showing elsewhere as recorded");
 }
 
 /// A run that takes hours, so that only the test ends it.
@@ -304,30 +242,6 @@ fn studio_and_headless_run_refuse_each_others_folder_and_name_the_owner() {
     headless.wait().expect("ended");
     studio.click_label("Start evolution");
     studio.wait_for_title("running");
-}
-
-#[test]
-fn a_stopped_run_can_be_resumed_from_the_list() {
-    let folder = folder();
-    let saves = folder.path().join("saves");
-    std::fs::create_dir(&saves).expect("created");
-    let arguments = format!("--preset quick --saves {}", saves.display());
-    json_lines(folder.path(), &format!("--no-render --json --seed 7 {arguments}"));
-    let log = std::fs::read_dir(&saves).expect("saves").next().expect("a run").expect("a run");
-    let log = log.path().join("log.jsonl");
-    let text = std::fs::read_to_string(&log).expect("a log");
-    let two: String = text.split_inclusive('\n').take(2).collect();
-    std::fs::write(&log, two).expect("written");
-    let Some(studio) = Studio::open("continue", &arguments) else { return };
-    studio.wait_for_title("seed 7 - 2 of 4 generations, paused");
-    studio.click_label("New run");
-    studio.wait_for_title("seed 8 - 4 of 4 generations, finished");
-    studio.scroll_and_click("Button", "Open an earlier run");
-    let is_it =
-        |place: &Place| place.role == "Button" && place.label.starts_with("A quick try 7, ");
-    studio.click_at(studio.scrolled_to_where("the stopped run", is_it).area.middle());
-    studio.wait_for_title("seed 7 - 4 of 4 generations, finished");
-    assert_eq!(std::fs::read_to_string(&log).expect("a log").lines().count(), 4);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //
 // page.mjs visit PAGE PICTURES      plays, scrubs, tries a twin, evolves; writes pictures into a folder
 // page.mjs twin PAGE FRICTION       tries a twin while the page checks its champion
-// page.mjs moment PAGE S CAMERA PICTURE   draws one moment as a picture
+// page.mjs moment PAGE S CAMERA PICTURE   draws one moment as a picture, and checks the champion
 // page.mjs hashes PAGE CHAMPIONS    simulates champions, a JSON list of their files' texts, with the page's core
 // page.mjs probe                    says whether Chromium is there
 import { readFileSync } from "node:fs";
@@ -134,7 +134,7 @@ async function moment() {
   await page.locator("#time").fill(time);
   await page.waitForTimeout(500);
   await page.locator("#view").screenshot({ path: picture });
-  return notes;
+  return { ...notes, check: await checked(page), text: await page.evaluate(() => document.body.innerText) };
 }
 
 async function hashes() {

@@ -16,7 +16,7 @@ import numpy  # noqa: E402
 import pandas  # noqa: E402
 import pyarrow.parquet  # noqa: E402
 
-KEYS = {"champion": "object", "step": "int32", "time_s": "float64", "limb": "int32"}
+KEYS = {"champion": "object", "seed": "uint64", "generation": "int32", "step": "int32", "time_s": "float64", "limb": "int32"}
 
 
 def main(csv_path, parquet_path, columns_path):
@@ -40,15 +40,22 @@ def main(csv_path, parquet_path, columns_path):
         assert list(table["champion"]) == list(reference["champion"]), f"{source}: champion differs"
         for name in names[1:]:
             kind = KEYS.get(name, "float32")
+            if not kind.startswith("float"):
+                assert list(table[name]) == list(reference[name]), f"{source}: {name} differs"
+                continue
             there = table[name].to_numpy(dtype="float64").astype(kind)
             expected = reference[name].to_numpy(dtype="float64").astype(kind)
-            assert numpy.array_equal(there, expected, equal_nan=kind.startswith("float")), f"{source}: {name} differs"
+            assert numpy.array_equal(there, expected, equal_nan=True), f"{source}: {name} differs"
     metadata = pyarrow.parquet.read_schema(parquet_path).metadata
     for name, meaning in columns:
         assert metadata[name.encode()].decode() == meaning, f"{name} means {metadata[name.encode()]}"
     facts = json.loads(metadata[b"champions"])
     assert [of["champion"] for of in facts] == list(reference["champion"].unique()), facts
     assert all(len(of["trace_hash"]) == 16 and of["preset"] and of["seed"] for of in facts), facts
+    for of in facts:
+        rows = reference[reference["champion"] == of["champion"]]
+        found = (rows["seed"].unique().tolist(), rows["generation"].unique().tolist())
+        assert found == ([int(of["seed"])], [int(of["generation"])]), found
     # The head has no joint in front of it.
     assert reference.loc[reference["limb"] == 1, "joint_bend_rad"].isna().all()
     assert reference.loc[reference["limb"] > 1, "joint_bend_rad"].notna().all()

@@ -121,11 +121,11 @@ pub mod hex_hash {
 }
 
 /// Returns a text from outside, such as the name of a file, as one line that a terminal only shows. A line break becomes a space. Other
-/// control characters, which would move the cursor or change colours, and characters that turn the direction of writing, which would hide
-/// the end of a name, become escapes such as `\u001b`. JSON reads such an escape as the character.
+/// control characters, which would move the cursor or change colours, characters that turn the direction of writing, which would hide the
+/// end of a name, and Unicode's separators of lines and paragraphs become escapes such as `\u001b`. JSON reads such an escape as the character.
 pub fn printable(text: &str) -> Cow<'_, str> {
-    let turns_writing = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let acts = |c: char| c != '\t' && (c.is_control() || turns_writing(c));
+    let directs = |c: char| matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let acts = |c: char| c != '\t' && (c.is_control() || directs(c));
     if !text.contains(acts) {
         return Cow::Borrowed(text);
     }
@@ -163,6 +163,7 @@ mod tests {
         }
         assert_eq!(printable("\u{1b}[31mred\u{7f}"), "\\u001b[31mred\\u007f");
         assert_eq!(printable("a\nb\rc"), "a b c");
+        assert_eq!(printable("a\u{2028}b\u{2029}c"), "a\\u2028b\\u2029c");
         assert_eq!(printable("nor.\u{202e}gpj\u{2066}"), "nor.\\u202egpj\\u2066");
         // In a line of JSON only these are left as they are.
         let name = "a\u{9b}2J\u{7f}\u{202e}b";

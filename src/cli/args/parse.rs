@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use clap::error::{ContextKind, ErrorKind};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory, FromArgMatches};
 
 use super::flags::CommandLine;
@@ -39,13 +39,6 @@ const EARLIER_NAMES: [(&str, &str); 13] = [
 /// Parses the arguments, shortens clap's errors to one line, and refuses flags without effect.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, CliError> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    // The name of a command comes first, or after flags without values.
-    let command = arguments.iter().skip(1).find(|word| !word.to_string_lossy().starts_with('-'));
-    let named =
-        EARLIER_NAMES.iter().find(|(earlier, _)| command.is_some_and(|word| word == earlier));
-    if let Some((earlier, now)) = named {
-        return Err(CliError::Usage(format!("snakes {earlier} is now: snakes {now}")));
-    }
     refuse_homes(&arguments)?;
     let parsed = CommandLine::command().try_get_matches_from(&arguments).and_then(|matches| {
         let line = CommandLine::from_arg_matches(&matches)?;
@@ -63,6 +56,15 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, Cl
             _ => Err(CliError::Usage(one_line(&error, &arguments))),
         },
     }
+}
+
+/// Returns the row of [`EARLIER_NAMES`] of the word that the error is about.
+fn earlier_name(error: &clap::Error) -> Option<&(&str, &str)> {
+    let words = [ContextKind::InvalidSubcommand, ContextKind::InvalidArg];
+    words.into_iter().filter_map(|kind| error.get(kind)).find_map(|word| match word {
+        ContextValue::String(word) => EARLIER_NAMES.iter().find(|(earlier, _)| word == earlier),
+        _ => None,
+    })
 }
 
 /// Refuses paths that begin with `~`, which a shell replaces only at the beginning of a word and without quotes. Otherwise `--out=~/runs`
@@ -91,6 +93,9 @@ fn one_line(error: &clap::Error, arguments: &[OsString]) -> String {
         }
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => return lists_to_show(),
         _ => (),
+    }
+    if let Some((earlier, now)) = earlier_name(error) {
+        return format!("snakes {earlier} is now: snakes {now}");
     }
     let text = error.render().to_string();
     let mut paragraphs = text.split("\n\n");
@@ -179,6 +184,10 @@ pub(super) mod tests {
     fn an_earlier_name_of_a_command_is_answered_with_the_present_one() {
         assert_eq!(refusal("families --seeds 3"), "snakes families is now: snakes study families");
         assert_eq!(refusal("--json compare"), "snakes compare is now: snakes study methods");
+        assert_eq!(refusal("robust a.ron"), "snakes robust is now: snakes exam FILES --trials 100");
+        // A value of a flag is no command.
+        assert!(asked("--out figures --no-render").is_ok());
+        assert!(refusal("run --out figures --polulation 3").contains("--polulation"));
     }
 
     #[test]

@@ -108,7 +108,7 @@ impl Offscreen {
         }
         let mut app = App::new();
         app.insert_resource(theme)
-            .insert_resource(StageQuality::for_films())
+            .insert_resource(StageQuality::for_films(width))
             .add_plugins((plugins, schedule::plugin))
             .init_resource::<FinishedPictures>()
             .add_plugins(scene::drawing);

@@ -31,19 +31,27 @@ pub(crate) struct StageQuality {
     least: Quality,
     /// Highest step that is offered.
     most: Quality,
+    /// Maximum width and height of the map of shadows, in pixels.
+    most_shadow: usize,
 }
+
+/// Width and height of the map of shadows in [`Quality::Fast`] and in all other steps, in pixels.
+const SHADOW_MAPS: [usize; 2] = [1024, 2048];
 
 impl Default for StageQuality {
     fn default() -> Self {
         let (least, most) = (Quality::Fast, Quality::Beautiful);
-        Self { chosen: None, automatic: Quality::Smooth, least, most }
+        let most_shadow = SHADOW_MAPS[1];
+        Self { chosen: None, automatic: Quality::Smooth, least, most, most_shadow }
     }
 }
 
 impl StageQuality {
-    /// Returns the quality for pictures and films without a window, which have at least smooth edges.
-    pub fn for_films() -> Self {
-        Self { least: Quality::Smooth, ..Self::default() }
+    /// Returns the quality for pictures and films without a window, which have at least smooth edges. A picture of `width` pixels shows no
+    /// more of a map of shadows that is wider than twice its width.
+    pub fn for_films(width: u32) -> Self {
+        let most_shadow = (2 * width as usize).next_power_of_two().min(SHADOW_MAPS[1]);
+        Self { least: Quality::Smooth, most_shadow, ..Self::default() }
     }
 
     /// Returns the steps that are offered on this device. A driver without a graphics card compiles the programs of the highest step for
@@ -159,7 +167,7 @@ fn equip_cameras(
     }
     if has_changed {
         suns.iter_mut().for_each(|mut sun| sun.contact_shadows_enabled = now == Quality::Beautiful);
-        let size = if now == Quality::Fast { 1024 } else { 2048 };
+        let size = SHADOW_MAPS[usize::from(now != Quality::Fast)].min(quality.most_shadow);
         commands.insert_resource(DirectionalLightShadowMap { size });
     }
 }

@@ -25,7 +25,7 @@ use snakes_lab::run::{
     Ancestor, BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource,
 };
 
-pub(crate) use compared_runs::{ComparedRuns, ListedRun, MOST_COMPARED};
+pub(crate) use compared_runs::{ComparedRuns, DamagedRun, ListedRun, MOST_COMPARED};
 pub(crate) use live_changes::news_of;
 
 /// Number of latest generations whose ten best snakes are kept.
@@ -160,6 +160,11 @@ impl CurrentRun {
     /// Returns the other runs of the saves folder, each with its readable name; `None` until the runs are listed.
     pub fn listed(&self) -> Option<impl Iterator<Item = &ListedRun>> {
         Some(self.others.runs.as_ref()?.iter().filter(|of| of.run.folder != self.source.folder))
+    }
+
+    /// Returns the runs of the saves folder that cannot be read.
+    pub fn damaged_runs(&self) -> &[DamagedRun] {
+        &self.others.damaged
     }
 
     /// Returns the reports of the finished generations, the first generation first.

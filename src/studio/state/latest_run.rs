@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use super::current_run::{CurrentRun, RunStatus};
+use super::current_run::{CurrentRun, DamagedRun, RunStatus};
 use super::options::Options;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::ui::notifications::Notices;
@@ -33,10 +33,11 @@ fn open(
     // A list that cannot be read is reported, and the own run starts.
     let Some(listed) = run.listed() else { return };
     *is_done = true;
-    let latest = listed
-        .filter(|of| of.run.finished > 0)
-        .max_by_key(|of| of.run.saved_at)
-        .map(|of| (of.run.clone(), offer(&of.run, &of.name)));
+    let latest = listed.filter(|of| of.run.finished > 0).max_by_key(|of| of.run.saved_at);
+    let later = |of: &&DamagedRun| latest.is_none_or(|latest| of.saved_at > latest.run.saved_at);
+    let damaged = run.damaged_runs().iter().filter(later).max_by_key(|of| of.saved_at);
+    notices.problems(damaged.map(|of| format!("The latest run cannot be opened: {}", of.problem)));
+    let latest = latest.map(|of| (of.run.clone(), offer(&of.run, &of.name)));
     if run.status() != RunStatus::Ready {
         return;
     }
@@ -94,6 +95,17 @@ mod tests {
             Some(generations) => small_run(&saves, 2, generations),
             None => RunSource::in_saves(&saves, plan, ExistingRun::Keep),
         };
+        let app = opened(saves, run, names_preset, is_ready);
+        (folder, app)
+    }
+
+    /// Starts the studio with this run of its own, and waits until `is_ready`.
+    fn opened(
+        saves: SavesFolder,
+        run: RunSource,
+        names_preset: bool,
+        is_ready: impl Fn(&World) -> bool,
+    ) -> App {
         let options =
             Options { offers_stopped_run: true, names_preset, ..Options::of_test(run, saves) };
         let mut app = App::new();
@@ -106,7 +118,7 @@ mod tests {
         while !is_ready(app.world()) && began.elapsed().as_secs() < 30 {
             app.update();
         }
-        (folder, app)
+        app
     }
 
     #[test]
@@ -128,6 +140,21 @@ mod tests {
             let seed = if names_preset { 1 } else { 2 };
             assert_eq!((run.plan_now.seed, run.status()), (seed, RunStatus::Running));
         }
+    }
+
+    #[test]
+    fn f5_a_damaged_latest_run_is_told_with_its_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        let damaged = small_run(&saves, 1, 10_000);
+        evolve(damaged.clone(), 1);
+        std::fs::write(damaged.folder.join("run.ron"), "(").expect("written");
+        let is_told = |world: &World| world.resource::<Notices>().len() > 0;
+        let app = opened(saves.clone(), small_run(&saves, 2, 9_000), false, is_told);
+        let said = app.world().resource::<Notices>().last().unwrap_or_default();
+        let file = damaged.folder.join("run.ron").display().to_string();
+        assert!(said.starts_with(&format!("The latest run cannot be opened: {file}: ")), "{said}");
+        assert_eq!(app.world().resource::<CurrentRun>().damaged_runs().len(), 1);
     }
 
     #[test]

@@ -300,7 +300,7 @@ fn s11_a_film_that_ffmpeg_does_not_write_is_an_error_and_the_earlier_film_stays(
         fs::set_permissions(&ffmpeg, fs::Permissions::from_mode(0o755)).expect("runnable");
         fs::write(folder.path().join("a.mp4"), "an earlier film").expect("written");
         let own = std::env::var("PATH").unwrap_or_default();
-        let order = format!("export {CLIMBER} -o a.mp4 --size 160x90 --end 5");
+        let order = format!("export {CLIMBER} -o a.mp4 --size 160x90 --fps 10 --end 2");
         let mut command = snakes(folder.path(), &order);
         let path = format!("{}:{own}", folder.path().display());
         let (code, line) = refusal(&command.env("PATH", path).output().expect("it starts"));
@@ -381,7 +381,10 @@ fn f12_the_next_film_removes_what_a_kill_left() {
     // The second export has removed what the first left.
     let left = names_in(folder.path());
     assert!(left.len() == 1 && left[0].starts_with(".unfinished-"), "{left:?}");
-    stdout_of(folder.path(), &format!("export {CLIMBER} -o climber.gif --size 160x90 --fps 10"));
+    stdout_of(
+        folder.path(),
+        &format!("export {CLIMBER} -o climber.gif --size 160x90 --fps 10 --end 1"),
+    );
     assert_eq!(names_in(folder.path()), ["climber.gif"]);
 }
 

@@ -13,6 +13,8 @@ mod scenes;
 mod soft;
 mod tables;
 
+pub use page::browser;
+
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -55,7 +57,7 @@ fn peer_python(modules: &str, test: &str) -> Option<Command> {
 }
 
 /// Runs a command, which must succeed, and returns its standard output.
-fn succeed(command: &mut Command) -> String {
+pub fn succeed(command: &mut Command) -> String {
     let output = command.output().expect("it starts");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let said = String::from_utf8_lossy(&output.stderr);

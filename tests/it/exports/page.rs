@@ -16,7 +16,7 @@ use super::{peer, peer_script, succeed};
 use crate::program::folder;
 
 /// Returns a command that opens pages, if Node.js, its packages and Chromium are installed.
-fn browser(test: &str) -> Option<Command> {
+pub fn browser(test: &str) -> Option<Command> {
     let script = peer_script("page.mjs");
     let script = script.to_str().expect("text");
     peer("node", &[script, "probe"], test).map(|mut node| {
@@ -114,7 +114,8 @@ fn names_with_markup_are_text_in_a_page() {
     export(&[&copy, &saved("fast.ron")], &page);
     let text = std::fs::read_to_string(&page).expect("a page");
     assert!(!text.contains("<img"), "no markup of a name");
-    let found = found(browser.arg("visit").arg(&page).arg(folder.path()));
+    let picture = folder.path().join("page.png");
+    let found = found(browser.arg("moment").arg(&page).args(["1", "side"]).arg(picture));
     assert_eq!(found["errors"], serde_json::json!([]), "{found}");
     assert!(found["text"].as_str().expect("text").contains(hostile));
     assert_eq!(found["check"], "equal");

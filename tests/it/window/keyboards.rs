@@ -30,9 +30,13 @@ impl Studio {
 }
 
 #[test]
-fn f1_keys_act_by_their_position_under_a_russian_layout() {
+fn f1_f2_keys_act_by_their_position_under_a_russian_layout_and_with_a_stale_wayland_display() {
     let arguments = "--preset quick --generations 1000";
-    let Some(studio) = Studio::open("russian-keys", arguments) else { return };
+    // The Wayland display of a session that has ended.
+    let variables = [("WAYLAND_DISPLAY", "wayland-9")];
+    let Some(studio) = Studio::open_with("russian-keys", arguments, &variables) else { return };
+    let said = studio.log();
+    assert!(said.contains("note: WAYLAND_DISPLAY is \"wayland-9\""), "{said}");
     studio.layout("ru");
     studio.wait_for_title("running");
     studio.key(E);
@@ -68,12 +72,4 @@ fn f1_keys_act_by_their_position_under_a_russian_layout() {
     studio.picture_with(|picture| !is_black(picture));
     studio.key("Escape");
     studio.place("Panel Change");
-}
-
-#[test]
-fn f2_with_a_stale_wayland_display_the_window_opens_on_x11() {
-    let variables = [("WAYLAND_DISPLAY", "wayland-9")];
-    let Some(studio) = Studio::open_with("stale", "--preset quick", &variables) else { return };
-    let said = studio.log();
-    assert!(said.contains("note: WAYLAND_DISPLAY is \"wayland-9\""), "{said}");
 }

@@ -3,20 +3,6 @@
 use super::display::Studio;
 
 #[test]
-fn button_and_menu_start_and_pause_a_run() {
-    let Some(studio) = Studio::open("menu", "--preset quick --generations 1000") else { return };
-    studio.wait_for_title("running");
-    studio.click_label("Pause evolution");
-    studio.wait_for_title("paused");
-    studio.choose("Run", "Start or pause evolution");
-    studio.wait_for_title("running");
-    studio.choose("Run", "Start or pause evolution");
-    studio.wait_for_title("paused");
-    studio.click_label("Continue evolution");
-    studio.wait_for_title("running");
-}
-
-#[test]
 fn a_slider_starts_a_what_if_and_can_be_undone_and_redone() {
     let Some(studio) = Studio::open("slider", "--preset quick") else { return };
     studio.pause_evolution();
@@ -75,18 +61,4 @@ fn search_settings_can_change_during_a_run() {
     studio.place("2 settings changed during the run");
     let now = studio.generations();
     studio.wait_for_generations(now + 2);
-}
-
-#[test]
-fn panels_can_be_hidden_and_shown_again() {
-    let Some(studio) = Studio::open("bare", "--preset quick") else { return };
-    studio.pause_evolution();
-    let beside = studio.stage();
-    studio.key("h");
-    studio.wait_for_no("Panel Watch");
-    let alone = studio.stage();
-    assert!(alone.left == 0 && alone.width() > beside.width(), "{alone:?}");
-    studio.key("h");
-    studio.place("Panel Watch");
-    assert_eq!(studio.stage(), beside);
 }

@@ -78,25 +78,6 @@ fn a_race_starts_by_key_or_click_and_ends_by_key() {
 }
 
 #[test]
-fn a_changed_world_is_shown_beside_the_original_and_kept_or_discarded() {
-    let Some(studio) = Studio::open("what-if", "--preset quick") else { return };
-    studio.pause_evolution();
-    studio.open_panel("Change");
-    studio.scroll_and_click("CheckBox", "The ground has its own surface");
-    studio.wait_for_title("showing climber with a what-if copy");
-    studio.click_label("Discard");
-    studio.wait_for_title_without("what-if");
-    studio.scroll_and_click("CheckBox", "The ground has its own surface");
-    studio.wait_for_title("showing climber with a what-if copy");
-    studio.click_label("Keep");
-    studio.wait_for_title("showing climber in another world");
-    studio.scroll_and_click("CheckBox", "The ground has its own surface");
-    studio.wait_for_title("what-if");
-    studio.key("Escape");
-    studio.wait_for_title("showing climber in another world");
-}
-
-#[test]
 fn a_change_is_tried_from_the_present_moment_on_and_copies_stay_side_by_side() {
     let Some(studio) = Studio::open("what-if-moment", "--preset quick") else { return };
     studio.pause_evolution();

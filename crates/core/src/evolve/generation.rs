@@ -18,6 +18,9 @@ pub struct GenerationRecord {
     pub generation: u32,
     /// Number of individuals that were evaluated.
     pub evaluations: u32,
+    /// Number of simulated trials: repeats and the trials that chose the champion count, too. None in logs of earlier versions of the program.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub simulations: Option<u64>,
     /// Number of evaluated individuals that were disqualified, for any reason.
     pub disqualified: u32,
     /// Number of evaluated individuals whose simulation panicked.
@@ -86,6 +89,10 @@ pub struct Rung {
     /// Number of individuals that succeeded on the rung.
     pub successes: u32,
 }
+
+/// Maximum number of trials of a snake: one, and the varied trials of the settings `trials` or `champion_trials`. Two candidates for champion
+/// are simulated beside the evaluations of a generation.
+const MOST_TRIALS: u64 = 101;
 
 /// Maximum number of species in the record of a generation. It limits the size of a log, so that the log of the longest run can be read.
 pub const MOST_SPECIES_RECORDED: usize = 24;
@@ -187,6 +194,10 @@ impl GenerationRecord {
         within("generation", self.generation, generation..=generation)?;
         within("generation", generation, 1..=plan.settings.evolution.generations)?;
         within("evaluations", self.evaluations, 0..=most)?;
+        if let Some(simulations) = self.simulations {
+            let most = MOST_TRIALS * (u64::from(self.evaluations) + 2);
+            within("simulations", simulations, 0..=most)?;
+        }
         within("disqualified", self.disqualified, 0..=self.evaluations)?;
         within("crashed", self.crashed, 0..=self.disqualified)?;
         within("on_landing", self.on_landing, 0..=self.evaluations)?;
@@ -220,6 +231,7 @@ impl GenerationRecord {
         Self {
             generation,
             evaluations,
+            simulations: None,
             disqualified: 0,
             crashed: 0,
             on_landing: 0,

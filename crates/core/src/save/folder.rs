@@ -133,7 +133,7 @@ pub struct RunSummary {
     pub finished: u32,
     /// Name that the user gave the run. None: the run has no name.
     pub name: Option<String>,
-    /// Time of the last change of the run's log since 1970; zero if it is unknown.
+    /// Time of the last change: see [`saved_at`].
     pub saved_at: Duration,
     /// Whether the run can continue with another generation.
     is_stopped: bool,
@@ -151,8 +151,7 @@ impl RunSummary {
         // A run whose notes cannot be read can still be resumed.
         let notes = EntryNotes::load(&notes_in_run(&folder)).unwrap_or_default();
         let name = notes.own_name().map(str::to_owned);
-        let log = fs::metadata(folder.join("log.jsonl"));
-        let saved_at = log.map_or(Duration::ZERO, |log| modified(&log));
+        let saved_at = saved_at(&folder);
         Ok(Self { folder, plan, finished, name, saved_at, is_stopped })
     }
 
@@ -165,6 +164,11 @@ impl RunSummary {
     pub fn generations_in_words(&self) -> String {
         self.plan.generations_in_words(self.finished, !self.is_stopped)
     }
+}
+
+/// Returns the time of the last change of the log in a run's folder since 1970; zero if it is unknown.
+pub fn saved_at(folder: &Path) -> Duration {
+    fs::metadata(folder.join("log.jsonl")).map_or(Duration::ZERO, |log| modified(&log))
 }
 
 /// Returns the name of the file of a generation's champion; the first generation is 1.

@@ -45,7 +45,7 @@ pub use change::parse_changes;
 pub use checkpoint::{SearchState, parse_checkpoint};
 pub use copies::ChampionCopies;
 pub use files::{SaveError, load_text, read_bytes};
-pub use folder::{RunSummary, SavesFolder, load_generation, load_run, within_run};
+pub use folder::{RunSummary, SavesFolder, load_generation, load_run, saved_at, within_run};
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};
 pub use own_files::{KnownFiles, OwnFile, OwnKind};

@@ -18,8 +18,10 @@ const fn column(name: &'static str, meaning: &'static str) -> Column {
 }
 
 /// Columns that identify a row. All are whole numbers, except the champion's name, which is text, and the time.
-pub(super) const KEYS: [Column; 4] = [
+pub(super) const KEYS: [Column; 6] = [
     column("champion", "name of the champion"),
+    column("seed", "seed of the run that found it"),
+    column("generation", "generation of that run in which it was found; the first is 1"),
     column("step", "number of the physics step; 0 is the start"),
     column("time_s", "simulated time"),
     column("limb", "number of the limb; the head is 1"),

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as PhysicalType};
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int32Type};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int32Type, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -26,6 +26,8 @@ const ROWS_PER_GROUP: usize = 100_000;
 #[derive(Debug, Clone, Copy)]
 struct RowKey<'n> {
     champion: &'n str,
+    seed: u64,
+    generation: u32,
     step: u32,
     time_s: f64,
     /// Number of the limb; the head is 1.
@@ -40,13 +42,15 @@ fn send_rows(
 ) -> Result<(), ExportError> {
     let mut reader = RowReader::default();
     for (index, ExportedChampion { name, loaded, .. }) in champions.iter().enumerate() {
+        let (seed, generation) = (loaded.champion.origin.seed, loaded.champion.origin.generation);
         let steps_per_s = f64::from(loaded.champion.trial.physics.steps_per_s);
         let send = |rollout: &Rollout| {
             let step = rollout.step();
             let time_s = f64::from(step) / steps_per_s;
             let rows = reader.rows(rollout);
             (1..).zip(&rows).try_for_each(|(limb, values)| {
-                send_row(&RowKey { champion: name, step, time_s, limb }, values)
+                let key = RowKey { champion: name, seed, generation, step, time_s, limb };
+                send_row(&key, values)
             })
         };
         follow(&loaded.champion, &progress.part(index, champions.len()), send)?;
@@ -65,7 +69,13 @@ pub(super) fn write_csv(
     let mut writer = csv::Writer::from_writer(&mut file);
     writer.write_record(columns().map(|column| column.name)).map_err(&failed)?;
     send_rows(champions, progress, |key, values| {
-        let numbers = [key.step.to_string(), key.time_s.to_string(), key.limb.to_string()];
+        let numbers = [
+            key.seed.to_string(),
+            key.generation.to_string(),
+            key.step.to_string(),
+            key.time_s.to_string(),
+            key.limb.to_string(),
+        ];
         let values = values.iter().map(|value| value.map(|value| value.to_string()));
         let cells = [no_formula(key.champion).into_owned()].into_iter().chain(numbers);
         writer.write_record(cells.chain(values.map(Option::unwrap_or_default))).map_err(&failed)
@@ -107,11 +117,15 @@ pub(super) fn write_parquet(
         .set_key_value_metadata(Some(meanings.chain([about]).collect()))
         // Splitting floats by bytes compresses better, because neighbouring steps differ in few bits.
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
-        .set_column_dictionary_enabled(KEYS[0].name.into(), true)
         .set_dictionary_enabled(false)
-        .set_column_encoding(KEYS[1].name.into(), Encoding::DELTA_BINARY_PACKED)
-        .set_column_encoding(KEYS[3].name.into(), Encoding::DELTA_BINARY_PACKED)
-        .set_column_encoding(KEYS[0].name.into(), Encoding::PLAIN)
+        .set_column_dictionary_enabled(KEYS[0].name.into(), true)
+        .set_column_encoding(KEYS[0].name.into(), Encoding::PLAIN);
+    let whole_numbers = [1, 2, 3, 5].map(|index: usize| KEYS[index].name);
+    let properties = whole_numbers
+        .into_iter()
+        .fold(properties, |properties, name| {
+            properties.set_column_encoding(name.into(), Encoding::DELTA_BINARY_PACKED)
+        })
         .build();
     let schema = Arc::new(schema().map_err(&failed)?);
     let file = UnfinishedFile::create(path)?;
@@ -134,6 +148,8 @@ struct ParquetTable<'p> {
 #[derive(Debug)]
 struct RowGroup {
     champions: Vec<ByteArray>,
+    seeds: Vec<i64>,
+    generations: Vec<i32>,
     steps: Vec<i32>,
     times_s: Vec<f64>,
     limbs: Vec<i32>,
@@ -145,6 +161,8 @@ impl Default for RowGroup {
     fn default() -> Self {
         Self {
             champions: Vec::new(),
+            seeds: Vec::new(),
+            generations: Vec::new(),
             steps: Vec::new(),
             times_s: Vec::new(),
             limbs: Vec::new(),
@@ -158,6 +176,8 @@ impl ParquetTable<'_> {
     fn row(&mut self, key: &RowKey, values: &RowValues) -> Result<(), ExportError> {
         let group = &mut self.group;
         group.champions.push(key.champion.into());
+        group.seeds.push(key.seed.cast_signed());
+        group.generations.push(key.generation.cast_signed());
         group.steps.push(key.step.cast_signed());
         group.times_s.push(key.time_s);
         group.limbs.push(key.limb.cast_signed());
@@ -174,6 +194,8 @@ impl ParquetTable<'_> {
         let mut write = || {
             let mut row_group = self.writer.next_row_group()?;
             write_column::<ByteArrayType>(&mut row_group, &group.champions, None)?;
+            write_column::<Int64Type>(&mut row_group, &group.seeds, None)?;
+            write_column::<Int32Type>(&mut row_group, &group.generations, None)?;
             write_column::<Int32Type>(&mut row_group, &group.steps, None)?;
             write_column::<DoubleType>(&mut row_group, &group.times_s, None)?;
             write_column::<Int32Type>(&mut row_group, &group.limbs, None)?;
@@ -208,9 +230,11 @@ fn schema() -> Result<Type, ParquetError> {
     };
     let mut fields = vec![
         key(0, PhysicalType::BYTE_ARRAY, Some(LogicalType::String))?,
-        key(1, PhysicalType::INT32, None)?,
-        key(2, PhysicalType::DOUBLE, None)?,
+        key(1, PhysicalType::INT64, Some(LogicalType::integer(64, false)))?,
+        key(2, PhysicalType::INT32, None)?,
         key(3, PhysicalType::INT32, None)?,
+        key(4, PhysicalType::DOUBLE, None)?,
+        key(5, PhysicalType::INT32, None)?,
     ];
     for column in VALUES {
         fields.push(field(column.name, PhysicalType::FLOAT, None, Repetition::OPTIONAL)?);

@@ -281,6 +281,8 @@ impl Experiment {
         self.strategy.learn(episodes);
         self.strategy.tell(&candidates, &evaluations);
         report.set_stairs(self.strategy.stairs_tree().as_ref());
+        let simulations = trials.simulations(&evaluations) + of_choice;
+        report.record.simulations = Some(simulations);
         self.finished = generation;
         if let Some((ladder, rung)) = self.ladder.as_mut().zip(report.rung) {
             self.strategy.forget_values();
@@ -292,7 +294,7 @@ impl Experiment {
             }
         }
         self.evaluated += evaluations.len() as u64;
-        self.simulations += trials.simulations(&evaluations) + of_choice;
+        self.simulations += simulations;
         self.known.clear();
         self.hash.update(&report.hash.to_le_bytes());
         if let Some(champion) = &report.champion {

@@ -143,8 +143,9 @@ pub fn evolve(
     if !json {
         write_line(out, TABLE_HEAD)?;
     }
-    let mut landing = Landing::default();
+    let (mut landing, mut simulations) = (Landing::default(), Some(0));
     let mut print = |report: &GenerationReport| {
+        simulations = simulations.zip(report.simulations).map(|(all, of)| all + of);
         let first = landing.add(report);
         let line = match json {
             true => report_json(report, first, bodies_vary).to_string(),
@@ -185,6 +186,8 @@ pub fn evolve(
             "type": "done",
             "run_hash": run_hash,
             "first_landing": landing.first,
+            "evaluations": landing.spent,
+            "simulations": simulations,
             "best": best.map(|best| short(best.evaluation.fitness)),
             "champion": recorder.best(),
         });
@@ -193,6 +196,9 @@ pub fn evolve(
         write_line(out, "")?;
         write_line(out, &format!("champion  {}", about(best)))?;
         write_line(out, &format!("saved to  {}", path.display()))?;
+        let trials = simulations.map(|all| format!(" in {all} simulations"));
+        let trials = trials.unwrap_or_default();
+        write_line(out, &format!("evaluated {} snakes{trials}", landing.spent))?;
         if let Some(first) = landing.first {
             write_line(out, &format!("landing   first reached by evaluation {first}"))?;
         }
@@ -266,6 +272,7 @@ fn report_json(report: &GenerationReport, first_landing: Option<u64>, bodies_var
         "on_landing": report.on_landing,
         "first_landing": first_landing,
         "evaluations": report.evaluations,
+        "simulations": report.simulations,
         "elapsed_s": report.elapsed_s,
         "meaning": report.meaning,
         "hash": format!("{:016x}", report.hash),

@@ -72,6 +72,7 @@ impl GenerationReport {
         let record = GenerationRecord {
             generation,
             evaluations: evaluations.len() as u32,
+            simulations: None,
             disqualified: reasons.values().sum(),
             crashed: reasons.get(&Disqualification::Crashed).copied().unwrap_or(0),
             on_landing: (0..evaluations.len()).filter(landed).count() as u32,

@@ -51,7 +51,7 @@ fn stopped_run() -> EntryDetails {
         controller: of.controller,
         rewarded: of.rewarded,
         finished: 2,
-        generations: Some(10),
+        generations: Some("2 of 10 generations".to_owned()),
         best: Some((2, 12.5)),
         best_of_each: vec![Some(3.0), Some(12.5)],
         champions: vec![1, 2],
@@ -159,7 +159,9 @@ fn impossible_actions_are_disabled() {
 
 #[test]
 fn a_finished_run_is_opened_unless_it_is_of_another_engine() {
-    for (generations, is_refused) in [(Some(10), false), (None, true)] {
+    for (generations, is_refused) in
+        [(Some("10 of 10 generations".to_owned()), false), (None, true)]
+    {
         let EntryDetails::Run(run) = stopped_run() else { panic!("a run") };
         let ended = Some("of engine 2".to_owned());
         let ended = EntryDetails::Run(Box::new(RunDetails { generations, ended, ..*run }));

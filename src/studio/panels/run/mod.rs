@@ -8,7 +8,7 @@ use bevy_egui::egui;
 use super::settings::Sheet;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, PlanCommand, RunCommand, WindowCommand};
-use crate::studio::state::current_run::{CurrentRun, ListedRun, RunStatus, news_of};
+use crate::studio::state::current_run::{CurrentRun, DamagedRun, ListedRun, RunStatus, news_of};
 use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::number_field::NumberField;
 use crate::studio::ui::text_rows::{explain, folded, problem, row, title_text, weak};
@@ -288,7 +288,10 @@ fn earlier_runs(ui: &mut egui::Ui, run: &CurrentRun) {
             return explain(ui, "Loading…");
         };
         let mut earlier = listed.filter(|of| of.run.finished > 0).peekable();
-        if earlier.peek().is_none() {
+        for DamagedRun { problem, .. } in run.damaged_runs() {
+            explain(ui, &format!("A run cannot be read: {problem}"));
+        }
+        if earlier.peek().is_none() && run.damaged_runs().is_empty() {
             explain(ui, "There are no other runs.");
         }
         for ListedRun { run: summary, name, .. } in earlier {

@@ -1,9 +1,10 @@
 //! Other runs of the saves folder, which the charts show beside the current run.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use snakes_core::evolve::{GenerationRecord, RunPlan};
-use snakes_core::save::{RunSummary, SavesFolder, load_log, settings_in_words};
+use snakes_core::save::{RunSummary, SavesFolder, load_log, saved_at, settings_in_words};
 use snakes_lab::run::BackgroundTask;
 use snakes_lab::run::names::{difference, name_of_listed, tell_apart};
 
@@ -18,12 +19,23 @@ pub(crate) struct ListedRun {
     pub name: String,
 }
 
+/// A run of the saves folder that cannot be read.
+#[derive(Debug)]
+pub(crate) struct DamagedRun {
+    /// The file that cannot be read, and the reason.
+    pub problem: String,
+    /// Time of the last change: see [`saved_at`].
+    pub saved_at: Duration,
+}
+
 /// Runs in the saves folder, and those among them that are compared with the current run.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
-    listing: Option<BackgroundTask<Vec<ListedRun>>>,
+    listing: Option<BackgroundTask<(Vec<ListedRun>, Vec<DamagedRun>)>>,
     /// All runs in the saves folder; `None` until they are listed.
     pub runs: Option<Vec<ListedRun>>,
+    /// Runs of the saves folder that cannot be read.
+    pub damaged: Vec<DamagedRun>,
     /// Runs that are compared with the current one.
     pub compared: Vec<ComparedCurve>,
     /// Version number, which every change increments.
@@ -62,13 +74,22 @@ impl ComparedRuns {
                 let settings = settings_in_words(&run.plan);
                 ListedRun { name: name_of_listed(&run, &settings), run, settings }
             };
-            let mut runs: Vec<ListedRun> = saves.runs().into_iter().map(listed).collect();
+            let (mut runs, mut damaged) = (Vec::new(), Vec::new());
+            for (folder, run) in saves.all_runs() {
+                match run {
+                    Ok(run) => runs.push(listed(run)),
+                    Err(error) => damaged.push(DamagedRun {
+                        problem: error.to_string(),
+                        saved_at: saved_at(&folder),
+                    }),
+                }
+            }
             let names = runs.iter_mut().map(|ListedRun { run, name, .. }| {
                 let difference = difference(&run.folder, run.name.is_some());
                 (name, difference)
             });
             tell_apart(names);
-            runs
+            (runs, damaged)
         });
         self.listing =
             Some(listing.map_err(|error| format!("The runs cannot be listed: {error}"))?);
@@ -98,8 +119,9 @@ impl ComparedRuns {
 
     /// Receives the results of the background tasks: the list of runs, and the runs to compare.
     pub fn take_in(&mut self) {
-        if let Some(runs) = BackgroundTask::take_result(&mut self.listing) {
-            self.runs = Some(runs.unwrap_or_default());
+        if let Some(listed) = BackgroundTask::take_result(&mut self.listing) {
+            let (runs, damaged) = listed.unwrap_or_default();
+            (self.runs, self.damaged) = (Some(runs), damaged);
             self.version += 1;
         }
         for run in &mut self.compared {

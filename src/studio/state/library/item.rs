@@ -185,13 +185,11 @@ impl LibraryItem {
         of_champion.or(self.run().map(|run| run.finished))
     }
 
-    /// Describes the generation: "generation 3", or "3 of 100 generations" for a run.
+    /// Describes the generation: "generation 3", or "3 of at most 100 generations" for a run.
     pub fn generation_text(&self) -> String {
         match (self.champion(), self.run()) {
             (Some(champion), _) => format!("generation {}", champion.origin.generation),
-            (_, Some(RunDetails { finished, generations: Some(all), .. })) => {
-                format!("{finished} of {all} generations")
-            }
+            (_, Some(RunDetails { generations: Some(words), .. })) => words.clone(),
             (_, Some(run)) => format!("{} generations", run.finished),
             _ => String::new(),
         }

@@ -72,8 +72,8 @@ pub struct RunDetails {
     pub rewarded: Fitness,
     /// Number of finished generations of the run.
     pub finished: u32,
-    /// Number of generations in total. None (unknown) for a run of another engine.
-    pub generations: Option<u32>,
+    /// Finished generations in words: see [`RunPlan::generations_in_words`]. None (unknown) for a run of another engine.
+    pub generations: Option<String>,
     /// Generation of the best champion, from 1, and the champion's fitness. None if there is no champion. If the run chooses champions by
     /// their fitness over varied trials, that fitness determines the best.
     pub best: Option<(u32, f32)>,
@@ -221,9 +221,7 @@ fn run(folder: &Path) -> Result<EntryDetails, SaveError> {
     let is_finished = plan.has_ended(&records);
     let ended = is_finished.then(|| "all its generations are finished".to_owned());
     let settings = &plan.settings;
-    // A finished run with large generations may have fewer of them than planned.
-    let planned = settings.evolution.generations;
-    let generations = if is_finished { records.len() as u32 } else { planned };
+    let generations = plan.generations_in_words(records.len() as u32, is_finished);
     Ok(EntryDetails::Run(Box::new(RunDetails {
         strategy: Some(settings.evolution.strategy),
         controller: settings.genome.controller,
@@ -303,7 +301,8 @@ mod tests {
         let place = run_in(&saves, 3);
         let EntryDetails::Run(run) = read_entry(&place).expect("whole") else { panic!("no run") };
         assert_eq!((run.preset.as_str(), run.seed), ("test", 3));
-        assert_eq!((run.finished, run.generations), (2, Some(4)));
+        assert_eq!(run.finished, 2);
+        assert_eq!(run.generations.as_deref(), Some("2 of 4 generations"));
         assert_eq!(run.champions, [1, 2]);
         assert_eq!(run.ended, None);
         assert_eq!(run.best_of_each.len(), 2);

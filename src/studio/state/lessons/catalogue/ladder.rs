@@ -33,7 +33,7 @@ pub(super) const LADDER: Lesson = Lesson {
             label: "Direct and by a ladder",
             shows: runs_of("house", 102, &[("generations", "54"), ("champion_trials", "0")]),
             question: best_run(
-                "With as many simulations, the direct search has come no further than the fourth step. Other runs may differ.",
+                "With as many evaluated snakes, the direct search has come no further than the fourth step. Other runs may differ.",
             ),
             sides: &[side("direct", &[]), side("by a ladder", &[("ladder.first_rise_m", "0.1")])],
         },
