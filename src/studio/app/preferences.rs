@@ -13,7 +13,7 @@ use crate::studio::scene::overlays::Overlays;
 use crate::studio::scene::quality::StageQuality;
 use crate::studio::stage::playback::Playback;
 use crate::studio::state::files::{Files, RecentFiles};
-use crate::studio::state::lessons::{Lessons, present_title};
+use crate::studio::state::lessons::Lessons;
 use crate::studio::state::machines::MachinesLink;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
@@ -85,14 +85,15 @@ fn restore(
     chosen.files.recent = RecentFiles::from_texts(&stored.recent);
     chosen.machines.remember(&stored.server);
     chosen.workspace.unfolded = stored.unfolded.into_iter().collect();
-    chosen.lessons.finished = stored.finished_lessons.into_iter().map(present_title).collect();
+    chosen.lessons.finished = stored.finished_lessons.into_iter().collect();
     chosen.workspace.scale.chosen = stored.ui_scale;
     chosen.workspace.layout = Layout::from_text(&stored.layout);
     let is_shown = |of: &Overlay| stored.overlays.iter().any(|name| name == of.name());
     chosen.overlays.extend(Overlay::ALL.into_iter().filter(is_shown));
     chosen.playback.set_speed(stored.speed);
     chosen.playback.loops = stored.loops;
-    chosen.quality.chosen = stored.quality.and_then(|name| Quality::named(&name));
+    let is_chosen = |of: &Quality| stored.quality.as_deref() == Some(of.name());
+    chosen.quality.chosen = Quality::ALL.into_iter().find(is_chosen);
 }
 
 /// Writes changed preferences when they have settled, and when the window closes.

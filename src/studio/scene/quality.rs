@@ -207,6 +207,11 @@ mod tests {
     use super::*;
 
     #[test]
+    fn preferences_have_a_name_for_each_step() {
+        assert_eq!(Quality::ALL.map(Quality::name), snakes_core::save::QUALITIES);
+    }
+
+    #[test]
     fn each_device_has_its_first_step_and_offers_beauty_only_with_a_graphics_card() {
         assert_eq!(StageQuality::default().now(), Quality::Smooth, "before the device is known");
         let [fast, smooth, beautiful] = Quality::ALL;

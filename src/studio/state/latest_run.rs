@@ -79,33 +79,27 @@ mod tests {
     use tempfile::TempDir;
 
     /// Evolves one generation of a run of seed 1 with this number of generations, starts the studio, and waits until `is_ready`. The
-    /// studio's own run has the seed 2 and `own` generations, or the default preset and the seed 1.
+    /// studio's own run has the seed 2 and `own` generations, or the default preset and the seed 1. If `is_damaged`, the plan of the first
+    /// run cannot be read.
     fn started(
-        generations: u32,
+        (generations, is_damaged): (u32, bool),
         own: Option<u32>,
         names_preset: bool,
         is_ready: impl Fn(&World) -> bool,
     ) -> (TempDir, App) {
         let folder = tempfile::tempdir().expect("a folder");
         let saves = SavesFolder::find(Some(folder.path()));
-        evolve(small_run(&saves, 1, generations), 1);
+        let earlier = small_run(&saves, 1, generations);
+        evolve(earlier.clone(), 1);
+        if is_damaged {
+            std::fs::write(earlier.folder.join("run.ron"), "(").expect("written");
+        }
         let settings = load_preset(DEFAULT_PRESET).expect("shipped").settings;
         let plan = RunPlan::new(DEFAULT_PRESET, 1, settings);
         let run = match own {
             Some(generations) => small_run(&saves, 2, generations),
             None => RunSource::in_saves(&saves, plan, ExistingRun::Keep),
         };
-        let app = opened(saves, run, names_preset, is_ready);
-        (folder, app)
-    }
-
-    /// Starts the studio with this run of its own, and waits until `is_ready`.
-    fn opened(
-        saves: SavesFolder,
-        run: RunSource,
-        names_preset: bool,
-        is_ready: impl Fn(&World) -> bool,
-    ) -> App {
         let options =
             Options { offers_stopped_run: true, names_preset, ..Options::of_test(run, saves) };
         let mut app = App::new();
@@ -118,7 +112,7 @@ mod tests {
         while !is_ready(app.world()) && began.elapsed().as_secs() < 30 {
             app.update();
         }
-        app
+        (folder, app)
     }
 
     #[test]
@@ -131,7 +125,7 @@ mod tests {
         ] {
             let names_preset = own.is_none();
             let is_told = |world: &World| world.resource::<Notices>().len() > 0;
-            let (_folder, app) = started(generations, own, names_preset, is_told);
+            let (_folder, app) = started((generations, false), own, names_preset, is_told);
             let notices = app.world().resource::<Notices>();
             let said = notices.last().unwrap_or_default();
             assert!(said.starts_with("test 1, ") && said.ends_with(ending), "{said}");
@@ -144,17 +138,12 @@ mod tests {
 
     #[test]
     fn f5_a_damaged_latest_run_is_told_with_its_file() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let saves = SavesFolder::find(Some(folder.path()));
-        let damaged = small_run(&saves, 1, 10_000);
-        evolve(damaged.clone(), 1);
-        std::fs::write(damaged.folder.join("run.ron"), "(").expect("written");
         let is_told = |world: &World| world.resource::<Notices>().len() > 0;
-        let app = opened(saves.clone(), small_run(&saves, 2, 9_000), false, is_told);
+        let (folder, app) = started((10_000, true), Some(9_000), false, is_told);
         let said = app.world().resource::<Notices>().last().unwrap_or_default();
-        let file = damaged.folder.join("run.ron").display().to_string();
-        assert!(said.starts_with(&format!("The latest run cannot be opened: {file}: ")), "{said}");
-        assert_eq!(app.world().resource::<CurrentRun>().damaged_runs().len(), 1);
+        let file = folder.path().display();
+        assert!(said.starts_with(&format!("The latest run cannot be opened: {file}")), "{said}");
+        assert!(said.contains("run.ron: damaged or incomplete at line 1"), "{said}");
     }
 
     #[test]
@@ -169,7 +158,7 @@ mod tests {
             };
             for (own, command, seed) in [(Some(generations), go_on, 1), (None, RunCommand::New, 2)]
             {
-                let (_folder, mut app) = started(generations, own, false, is_open);
+                let (_folder, mut app) = started((generations, false), own, false, is_open);
                 let said = app.world().resource::<Notices>().last().unwrap_or_default();
                 let is_told = said.starts_with("test 1, ") && said.contains(" is finished: ");
                 assert_eq!(is_told, status == RunStatus::Finished, "{said}");

@@ -28,7 +28,7 @@ use snakes_lab::run::{ParallelRuns, ParallelRunsEvent};
 use catalogue::{champions, plan};
 use lesson::Shows;
 
-pub(crate) use catalogue::{LESSONS, present_title};
+pub(crate) use catalogue::LESSONS;
 pub(crate) use found::Found;
 pub(crate) use lesson::LessonScene;
 pub(crate) use plays::Plays;

@@ -7,16 +7,6 @@ pub(crate) fn decimals(value: impl Into<f64>, count: usize) -> String {
     if is_zero { text.trim_start_matches('-').to_owned() } else { text }
 }
 
-/// Formats a number with at most this many decimals, without trailing zeros.
-pub(crate) fn short(value: f64, count: usize) -> String {
-    let text = format!("{value:.count$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
-}
-
 /// Formats a share, where 1 is the whole, as whole percents.
 pub(crate) fn in_percent(share: f32) -> String {
     format!("{:.0} %", share * 100.0)

@@ -5,7 +5,6 @@ use std::ops::RangeInclusive;
 use bevy_egui::egui;
 use egui_plot::{AxisHints, GridInput, GridMark, Plot, PlotBounds, uniform_grid_spacer};
 
-use super::decimals::short;
 use super::text_rows::weak;
 use super::theme;
 use snakes_lab::plot::{Axis, tick_step, tick_text};
@@ -59,7 +58,7 @@ pub(crate) fn number(value: f64) -> String {
         size if size >= 0.0995 || size == 0.0 => 2,
         _ => 3,
     };
-    short(value, digits)
+    snakes_lab::study::number(value, digits)
 }
 
 /// Returns the bounds of a chart, from the ranges of its axes.

@@ -210,14 +210,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn themes_parse_by_name() {
-        assert_eq!("light".parse(), Ok(Theme::Light));
-        assert_eq!("dark".parse(), Ok(Theme::Dark));
-        let refused = "Dim".parse::<Theme>().expect_err("no such theme");
-        assert_eq!(refused.to_string(), "theme is \"Dim\"; allowed: light or dark");
-    }
-
-    #[test]
     fn drawing_uses_the_active_theme() {
         let context = egui::Context::default();
         // egui loads its fonts in the first pass.

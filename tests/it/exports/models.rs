@@ -1,6 +1,7 @@
 //! Bodies as models for MuJoCo, ODE and URDF, and champions that climb in other engines.
 
 use std::f32::consts::TAU;
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -362,6 +363,37 @@ fn champions_with_and_without_senses_climb_in_other_engines() {
         // would be about 0. In ODE `feeler` falls off the side before its third step.
         assert!(line["there"]["way"].as_f64() > Some(0.2), "{line}");
     }
+}
+
+#[test]
+fn a_study_has_its_champions_judged_in_other_engines_and_continues_with_what_is_missing() {
+    let test = "a_study_has_its_champions_judged";
+    let Some(python) = peer_python("mujoco, panda3d.ode", test) else { return };
+    let folder = folder();
+    let study = "(name: \"tiny\", title: \"Tiny\", preset: \"climb\", seeds: 1, evaluations: 12, judges: [\"mujoco\", \"ode\"], \
+                 settings: {\"trial.duration_s\": 2, \"cma_es.newborns\": 0, \"evolution.population\": 6}, \
+                 arms: [(name: \"a\", title: \"A\")], show: [\"exam_mujoco_kept\", \"exam_ode_kept\", \"simulations\"])";
+    fs::write(folder.path().join("tiny.ron"), study).expect("written");
+    let perform = |python: &OsStr| {
+        let mut command = snakes(folder.path(), "study tiny.ron --json --out out");
+        command.env(super::PYTHON_VARIABLE, python).output().expect("it starts")
+    };
+    let refused = perform(OsStr::new("no-such-python"));
+    let said = String::from_utf8_lossy(&refused.stderr).trim_end().to_owned();
+    assert!(said.starts_with("error: the suite mujoco needs Python with MuJoCo: "), "{said}");
+    let value = |name: &str| -> f64 {
+        let output = perform(python.get_program());
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let lines = text.lines().map(|line| serde_json::from_str(line).expect("JSON"));
+        let run = lines.into_iter().find(|line: &Value| line["type"] == "run").expect("a run");
+        run[name].as_f64().unwrap_or_else(|| panic!("{name} in {run}"))
+    };
+    let first =
+        ["exam_mujoco_trials", "exam_ode_trials", "exam_ode_kept", "simulations"].map(value);
+    assert_eq!(first[..2], [20.0, 20.0]);
+    assert!(first[2] > 0.0, "{first:?}");
+    // A second command makes nothing again, so that its simulations are those of the first.
+    assert_eq!(value("simulations"), first[3]);
 }
 
 #[test]

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::evaluator::{Evaluator, WorkersError};
 use super::json::{short, with_short_numbers};
+use super::judge::JudgeError;
 use super::progress_bar::run_generation_with_bar;
 use super::recorder::{RecordedRun, RunSource};
 use super::report::GenerationReport;
@@ -89,9 +90,21 @@ pub enum HeadlessError {
         /// Difference in words, with a possible reason.
         difference: String,
     },
+    /// A judge could not examine a champion.
+    #[error(transparent)]
+    Judge(JudgeError),
     /// Every agent of every generation was disqualified.
     #[error("no champion: every snake of every generation was disqualified")]
     NoChampion,
+}
+
+impl From<JudgeError> for HeadlessError {
+    fn from(error: JudgeError) -> Self {
+        match error {
+            JudgeError::Cancelled => Self::Cancelled { kept: None },
+            other => Self::Judge(other),
+        }
+    }
 }
 
 impl HeadlessError {

@@ -5,7 +5,8 @@ use std::ops::RangeInclusive;
 use super::definition::{Goal, Study};
 use super::measure::Measure;
 use super::plans::is_short_for;
-use super::values::{Form, of_suite, value};
+use super::values::{Form, of_judge, of_suite, value};
+use crate::run::judge::JUDGES;
 use snakes_core::check::{Invalid, name, quoted, within};
 use snakes_core::schema::Choices;
 use snakes_core::score::ExamSuite;
@@ -100,6 +101,11 @@ impl Study {
             name.strip_prefix(start.as_str())
                 .is_some_and(|end| end.is_empty() || end.starts_with('_'))
         };
+        let judge = JUDGES.iter().find(|judge| name.starts_with(&of_judge(judge, "")));
+        if let Some(judge) = judge.filter(|judge| !self.judges.contains(judge)) {
+            let allowed = format!("other values, or judges with {:?}", judge.name);
+            return Err(Invalid::new(field, quoted(name), allowed));
+        }
         match ExamSuite::OPTIONS.iter().find(is_of).filter(|suite| !self.suites.contains(suite)) {
             Some(suite) => {
                 let allowed = format!("other values, or suites with {:?}", suite.choice().name);

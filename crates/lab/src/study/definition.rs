@@ -8,6 +8,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
 use super::measure::Measure;
+use crate::run::judge::{JUDGES, Judge};
 use snakes_core::check::{Invalid, quoted};
 use snakes_core::evolve::StrategyKind;
 use snakes_core::genome::ControllerKind;
@@ -61,6 +62,9 @@ pub struct Study {
     /// Suites of the exam for champions, given in files by their names.
     #[serde(default, deserialize_with = "suites_by_name")]
     pub suites: Vec<ExamSuite>,
+    /// Other programs' physics engines in which champions are examined, given in files by their names.
+    #[serde(default, deserialize_with = "judges_by_name")]
+    pub judges: Vec<&'static Judge>,
     /// Names of the values in the table and the picture, besides those of the demands.
     #[serde(default)]
     pub show: Vec<String>,
@@ -211,6 +215,17 @@ impl Display for Plain {
 fn suites_by_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ExamSuite>, D::Error> {
     let names = Vec::<String>::deserialize(deserializer)?;
     suites_named("suites", &names).map_err(D::Error::custom)
+}
+
+fn judges_by_name<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<&'static Judge>, D::Error> {
+    let names = Vec::<String>::deserialize(deserializer)?;
+    let named = |name: &String| {
+        let allowed = JUDGES.iter().map(|judge| judge.name).collect::<Vec<_>>().join(", ");
+        Judge::named(name).ok_or_else(|| Invalid::new("judges", format!("{name:?}"), allowed))
+    };
+    names.iter().map(named).collect::<Result<_, _>>().map_err(D::Error::custom)
 }
 
 /// Returns the suites with these names, each once, in the usual order of suites.

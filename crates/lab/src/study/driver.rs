@@ -8,10 +8,12 @@ use super::findings::Findings;
 use super::records::{result_records, run_records};
 use super::results::Results;
 use super::run::{FinishedRun, PlannedRun};
-use super::values::{add_exam, of_suite};
+use super::values::{add_exam, add_judged, of_judge, of_suite};
+use crate::export::mjcf;
 use crate::plot;
 use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::{HeadlessError, say};
+use crate::run::judge::{Court, Judge, judge_trials};
 use crate::run::progress_bar::{bar_of, beneath_bar, with_bar};
 use crate::run::{Evaluator, RunControl, whole_runs};
 use snakes_core::check::{Invalid, within};
@@ -20,6 +22,7 @@ use snakes_core::save::{
     load_champion, load_study, store_champion, store_csv, store_exam, store_picture, store_study,
 };
 use snakes_core::score::ExamSuite;
+use snakes_core::world::WorldPlan;
 
 /// Paths of the files of a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,7 +77,9 @@ pub fn perform(
 ) -> Result<(StudyRuns, Findings), HeadlessError> {
     let planned = study.planned()?;
     within("runs", planned.len(), 1..=MAX_STUDY_RUNS).map_err(SaveError::Study)?;
-    let keeps_champions = !study.suites.is_empty();
+    let keeps_champions = !study.suites.is_empty() || !study.judges.is_empty();
+    let mut courts =
+        study.judges.iter().map(|judge| Court::start(judge)).collect::<Result<Vec<_>, _>>()?;
     if keeps_champions {
         SavesFolder::find(Some(&files.champions)).prepare()?;
     }
@@ -83,7 +88,7 @@ pub fn perform(
         planned.result(&finished).is_some_and(|run| {
             let arm = planned.arm;
             arm.examined == Examined::Never
-                || left_suites(study, run).is_empty()
+                || left_suites(study, run).is_empty() && left_judges(study, run).is_empty()
                 || run.number("fitness").is_none()
                 || files.champion(arm, run.seed).exists()
         })
@@ -108,7 +113,10 @@ pub fn perform(
     result.map_err(|error| error.keeping(&files.ron))?;
     let order = |name: &str| study.arms.iter().position(|arm| arm.name == name);
     finished.arms.sort_by_key(|arm| order(&arm.name));
-    let examined = examine_champions(study, files, &mut finished, evaluator, control);
+    let examined =
+        examine_champions(study, files, &mut finished, evaluator, control).and_then(|()| {
+            judge_champions(study, files, &mut finished, &mut courts, evaluator, control)
+        });
     store_study(&files.ron, &finished)?;
     examined.map_err(|error| error.keeping(&files.ron))?;
     let findings = Findings::of(study, evaluator, control)?;
@@ -209,6 +217,54 @@ fn examine_champions(
             simulations
                 .map(|all| run.values.insert("simulations".to_owned(), StudyValue::Number(all)));
             add_exam(&mut run.values, &results);
+        }
+    }
+    Ok(())
+}
+
+/// Returns the judges of the study for which a run has no results.
+fn left_judges(study: &Study, run: &StudiedRun) -> Vec<&'static Judge> {
+    let is_left = |judge: &&Judge| run.number(&of_judge(judge, "_trials")).is_none();
+    study.judges.iter().copied().filter(is_left).collect()
+}
+
+/// Examines champions by the judges whose results are missing, and adds the results to their runs. Judges are no part of a champion's
+/// file. Each result is stored at once.
+fn judge_champions(
+    study: &Study,
+    files: &StudyFiles,
+    finished: &mut StudyRuns,
+    courts: &mut [Court],
+    evaluator: &dyn Evaluator,
+    control: &RunControl,
+) -> Result<(), HeadlessError> {
+    let seeds = study.seeds();
+    let model = |plan: &WorldPlan| mjcf("snake", plan, &[]);
+    for arm in study.selected_arms() {
+        let of_arm = finished.arms.iter().find(|of| of.name == arm.name);
+        let examined = of_arm.map(|of| seeds_to_examine(arm, &of.runs, &seeds)).unwrap_or_default();
+        for seed in examined {
+            let path = files.champion(arm, seed);
+            for court in &mut *courts {
+                let runs = finished.arms.iter_mut().filter(|of| of.name == arm.name);
+                let Some(run) = runs.flat_map(|of| &mut of.runs).find(|run| run.seed == seed)
+                else {
+                    continue;
+                };
+                if !left_judges(study, run).contains(&court.judge()) {
+                    continue;
+                }
+                say(&format!("{} of {}, seed {seed}", court.judge().title, arm.name));
+                let champion = load_champion(&path)?.champion;
+                let bar = bar_of(judge_trials().into(), "trials");
+                let work = || court.examine(&champion, &model, evaluator, control);
+                let result = with_bar(&bar, control, work)?;
+                let before = run.number("simulations").unwrap_or(0.0);
+                let all = StudyValue::Number(before + f64::from(judge_trials()));
+                run.values.insert("simulations".to_owned(), all);
+                add_judged(&mut run.values, &result);
+                store_study(&files.ron, finished)?;
+            }
         }
     }
     Ok(())

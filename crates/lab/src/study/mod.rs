@@ -37,7 +37,7 @@ pub use records::json_lines;
 pub use report::{tables, values_as_markdown};
 pub use results::{Measured, Results, Verdict};
 pub use run::{FinishedRun, PlannedRun};
-pub use values::{Form, ValueInfo, value, values};
+pub use values::{Form, ValueInfo, number, value, values};
 
 #[cfg(test)]
 mod tests;

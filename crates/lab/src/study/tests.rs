@@ -132,6 +132,11 @@ fn what_a_definition_must_not_say_is_refused_with_the_allowed_values() {
             "show is \"exam_shove\"; allowed: other values, or suites with \"shove\"",
         ),
         (
+            "\"generation_means\"]",
+            "\"exam_ode_kept\"]",
+            "show is \"exam_ode_kept\"; allowed: other values, or judges with \"ode\"",
+        ),
+        (
             "compare: [\"fitness\"]",
             "compare: [\"tree\"]",
             "compare is \"tree\"; allowed: a value that is a number",

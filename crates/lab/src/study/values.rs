@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
+use crate::run::judge::{JUDGES, Judge, JudgeResult};
 use snakes_core::check::Invalid;
 use snakes_core::genome::StairsClass;
 use snakes_core::save::StudyValue;
@@ -216,6 +217,20 @@ const OF_SUITE: [(&str, &str, usize, &str); 5] = [
     ),
 ];
 
+/// Values of each judge: suffix of the name, suffix of the title, digits, description.
+const OF_JUDGE: [(&str, &str, usize, &str); 5] = [
+    ("", "", 1, "Landings of 100 trials"),
+    ("_trials", " trials", 0, "Number of trials"),
+    ("_climbed", " climbed", 0, "Trials that climb at least three steps"),
+    ("_way", " way", 2, "Median share of the way from the start to the landing"),
+    (
+        "_kept",
+        " kept",
+        2,
+        "Median share that the champion keeps of its way in this program from the same start",
+    ),
+];
+
 /// Returns all values, in the order of tables and files.
 pub fn values() -> &'static [ValueInfo] {
     static VALUES: OnceLock<Vec<ValueInfo>> = OnceLock::new();
@@ -232,16 +247,16 @@ fn listed() -> Vec<ValueInfo> {
         about: about.to_owned(),
     };
     let mut values: Vec<ValueInfo> = ROWS.map(row).to_vec();
+    let number = |name: String, title: String, digits, about: String| ValueInfo {
+        name,
+        title,
+        unit: "",
+        digits,
+        form: Number,
+        about,
+    };
     for suite in ExamSuite::OPTIONS {
         let name = suite_name(*suite);
-        let number = |name: String, title: String, digits, about: String| ValueInfo {
-            name,
-            title,
-            unit: "",
-            digits,
-            form: Number,
-            about,
-        };
         for (ending, title, digits, about) in OF_SUITE {
             let about = format!("{about} in the suite {}.", suite.choice().name);
             let title = format!("{}{title}", suite.choice().title.to_lowercase());
@@ -253,6 +268,13 @@ fn listed() -> Vec<ValueInfo> {
                     format!("Held-out stairs of the class {class} on which the champion lands.");
                 values.push(number(format!("exam_{name}_{class}"), class.to_owned(), 1, about));
             }
+        }
+    }
+    for judge in &JUDGES {
+        for (ending, title, digits, about) in OF_JUDGE {
+            let about = format!("{about} in {}.", judge.title);
+            let title = format!("{}{title}", judge.title);
+            values.push(number(of_judge(judge, ending), title, digits, about));
         }
     }
     values
@@ -309,6 +331,26 @@ pub(super) fn short(value: f32) -> StudyValue {
 /// Returns the name of a suite's value, such as `exam_held_out_trials`.
 pub fn of_suite(suite: ExamSuite, ending: &str) -> String {
     format!("exam_{}{ending}", suite_name(suite))
+}
+
+/// Returns the name of a judge's value, such as `exam_ode_kept`.
+pub(super) fn of_judge(judge: &Judge, ending: &str) -> String {
+    format!("exam_{}{ending}", judge.name)
+}
+
+/// Adds the results of a judge to the values of a run.
+pub(super) fn add_judged(values: &mut BTreeMap<String, StudyValue>, result: &JudgeResult) {
+    let JudgeResult { judge, trials, climbed, landed, way, kept, .. } = result;
+    let landings = 100.0 * f64::from(landed[1]) / f64::from((*trials).max(1));
+    let found = [
+        StudyValue::Number(landings),
+        StudyValue::Number((*trials).into()),
+        StudyValue::Number(climbed[1].into()),
+        short(way[1]),
+        short(*kept),
+    ];
+    let names = OF_JUDGE.map(|(ending, ..)| of_judge(judge, ending));
+    values.extend(names.into_iter().zip(found));
 }
 
 /// Adds the results of an exam to the values of a run.

@@ -4,7 +4,6 @@ use bevy_egui::egui;
 
 use super::edit::{StairsEdit, StairsResponse};
 use crate::studio::ui::accessible::named;
-use crate::studio::ui::decimals::short;
 use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::world::Stairs;
@@ -84,7 +83,7 @@ fn length(
     let field = egui::DragValue::new(&mut changed_m)
         .speed(SPEED_M)
         .range(range)
-        .custom_formatter(|length_m, _| short(length_m, 3))
+        .custom_formatter(|length_m, _| snakes_lab::study::number(length_m, 3))
         .suffix(" m")
         .update_while_editing(false);
     let response = named(ui.add(field), egui::WidgetType::DragValue, name);

@@ -29,15 +29,6 @@ pub(crate) const LESSONS: [Lesson; 9] = [
     report::REPETITION,
 ];
 
-/// Returns the present title of a lesson that an earlier version may have stored by another one.
-pub(crate) fn present_title(stored: String) -> String {
-    match stored.as_str() {
-        "Why bodies need protection" => bodies::PROTECTION.title.to_owned(),
-        "Learned by heart" => senses::ONE_MOTION.title.to_owned(),
-        _ => stored,
-    }
-}
-
 /// Returns a built-in champion in each of these worlds or bodies.
 pub(super) fn champions(
     champion: &'static str,

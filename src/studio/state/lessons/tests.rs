@@ -238,12 +238,6 @@ fn after_a_lesson_settings_are_as_they_were() {
     assert!(lessons.view().is_none());
 }
 
-#[test]
-fn a_lesson_that_was_finished_under_an_earlier_title_stays_finished() {
-    assert_eq!(present_title("Why bodies need protection".to_owned()), LESSONS[6].title);
-    assert_eq!(present_title("Learned by heart".to_owned()), LESSONS[2].title);
-}
-
 /// Begins the first lesson. Returns the lessons and a prepared run.
 fn first_lesson() -> (Lessons, CurrentRun) {
     let (mut lessons, mut run) = (Lessons::default(), prepared_run());
