@@ -43,7 +43,7 @@ fn print_lines(body: &BodyPlan, is_own: bool, tree: Option<String>) -> Result<()
         }))?;
     }
     print_json(&json!({
-        "done": true,
+        "type": "done",
         "blocks": body.limbs(),
         "parts": body.parts.len(),
         "evolved": is_own,

@@ -29,12 +29,12 @@ fn documented(command: &str, kind: &str) -> BTreeSet<String> {
     fields
 }
 
-/// Adds the names of all fields of a value, including those within it, but not the names within settings.
+/// Adds the names of all fields of a value, including those within it, but not the names of settings and of an exam's conditions.
 fn add_fields(value: &Value, fields: &mut BTreeSet<String>) {
     match value {
         Value::Object(object) => object.iter().for_each(|(name, value)| {
             fields.insert(name.clone());
-            if name != "settings" {
+            if !["settings", "kept_in"].contains(&name.as_str()) {
                 add_fields(value, fields);
             }
         }),

@@ -184,7 +184,7 @@ impl StudioParams<'_, '_> {
                 stage.present_others(show, notices);
                 if *command == BodyCommand::Evolve {
                     workspace.open(PanelKind::Run);
-                    notices.info("A run started from the edited body.".to_owned());
+                    notices.info("A run started from the edited body. Its blocks evolve, too: there may be more or fewer soon.".to_owned());
                 }
             }
             Command::Machines(command) => self.machines.apply(command, run)?,

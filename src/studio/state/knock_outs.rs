@@ -58,9 +58,7 @@ pub(crate) fn answer_in_words(lanes: &[&Lane]) -> Option<String> {
     let ways: Vec<f32> =
         lanes.iter().zip(&ends).map(|(of, end)| ExamEnd::way_of(end, of.trial())).collect();
     if ways[0] <= 0.0 {
-        return Some(
-            "With nothing missing it gets nowhere, so this race tells no need.".to_owned(),
-        );
+        return Some("The complete snake gets nowhere, so this race shows nothing.".to_owned());
     }
     let is_small = |copy: &usize| ways[0] - ways[*copy] < SMALL_LOSS * ways[0];
     let all = 1..lanes.len();

@@ -50,7 +50,12 @@ fn open(
         is_any_wanted || is_alike
     };
     let opened = match latest {
-        Some((latest, _)) if is_wanted(&latest.plan) => run.open_earlier(&latest.folder),
+        Some((latest, (text, _))) if is_wanted(&latest.plan) => {
+            if latest.is_stopped() {
+                notices.important(format!("{text} \"Continue evolution\" goes on with it."));
+            }
+            run.open_earlier(&latest.folder)
+        }
         Some((latest, (text, label))) => {
             let go_on = Command::Run(RunCommand::Continue(latest.folder));
             notices.lasting_offer(text, label, go_on);

@@ -192,16 +192,16 @@ impl SettingGroup for AgentSettings {
                 .needs(Self::GIVEN_BODY)
                 .unit("rad")
                 .hint(
-                    "Maximum angle by which a joint bends up or down. Without a value, each snake has its own, \
-                     drawn from a list",
+                    "Maximum angle by which a joint bends up or down. Without a value, each random \
+                     snake gets one of the limits to choose from",
                 )
                 .slider(0.0, 3.0);
             twist_limit_rad: optional_per_part("Twist limit", limits, each_joint, 1.0)
                 .needs(Self::GIVEN_BODY)
                 .unit("rad")
                 .hint(
-                    "Maximum angle by which a joint twists about the snake's long axis, in either direction. Without a value, each snake has its own, \
-                     drawn from a list",
+                    "Maximum angle by which a joint twists about the snake's long axis, in either direction. Without a value, each random \
+                     snake gets one of the limits to choose from",
                 )
                 .slider(0.0, 3.0);
             // The range ends at a thousand times the torque of the report. A greater torque would only disqualify snakes.

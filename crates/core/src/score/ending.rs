@@ -13,12 +13,12 @@ choices! {
         Landed = "landed", "landed", "It is on the landing.";
         OffTheSide = "off-the-side", "fell off the side", "It left the stairs over an edge and did not come back; the step is the one that it left.";
         FellBack = "fell-back", "fell back",
-            "It was higher more than a second ago; the step is the one on which it ended, 0 on the ground before the stairs.";
+            "It had climbed higher, but fell and did not get back up. The step is the one on which it ended.";
         Stuck = "stuck", "stuck at a riser", "It got no further for the last three seconds, and its foremost block is at the riser with this number.";
         Beside = "beside", "passed the stairs", "It is beside the stairs, on which it never was.";
         LeftTheGround = "left-the-ground", "left the ground", "It has been in the air for longer than a fall from the highest step takes.";
-        OutOfTime = "out-of-time", "out of time", "None of the others: the time ended while it was on its way, on the ground or on this step.";
-        Disqualified = "disqualified", "disqualified", "It was disqualified.";
+        OutOfTime = "out-of-time", "out of time", "The time ended while it was still on its way.";
+        Disqualified = "disqualified", "disqualified", "It broke a limit of the trial, so its result does not count.";
     }
 }
 

@@ -71,7 +71,9 @@ impl Fitness {
                 "furthest distance of the middle block along the stairs (y) at any time"
             }
             Self::StepsClimbed => "steps climbed at the end",
-            Self::Share => "share of the way to the landing at the end",
+            Self::Share => {
+                "share of the way to the landing at the end, plus up to 10 % for an early arrival"
+            }
         }
     }
 

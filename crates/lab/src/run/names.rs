@@ -108,7 +108,7 @@ pub fn name_of_listed(run: &RunSummary, settings: &str) -> String {
 /// Describes a fitness in a few letters: whole metres, a share of the way, or steps.
 fn way_in_words(rewarded: Fitness, fitness: f32) -> String {
     match rewarded {
-        Fitness::Share if fitness >= 1.0 => "landed".to_owned(),
+        Fitness::Share if fitness >= 1.0 => "at the top".to_owned(),
         Fitness::Share => format!("{:.0} %", fitness * 100.0),
         Fitness::StepsClimbed => rewarded.text(fitness),
         // Adding zero removes the sign of a negative zero.
@@ -178,7 +178,7 @@ mod tests {
             ("climb", day, Some((Fitness::Climb, 26.04)), "Climb 1, 27 Nov, 26 m"),
             ("neat", day, None, "Networks that grow (NEAT) 1, 27 Nov"),
             ("my-own", Duration::ZERO, Some((Fitness::Share, 0.449)), "my-own 1, 45 %"),
-            ("climb", day, Some((Fitness::Share, 1.013)), "Climb 1, 27 Nov, landed"),
+            ("climb", day, Some((Fitness::Share, 1.013)), "Climb 1, 27 Nov, at the top"),
             (
                 "ice, friction 0.2",
                 day,

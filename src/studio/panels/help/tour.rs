@@ -61,7 +61,7 @@ const STEPS: [TourStep; 5] = [
     TourStep {
         highlights: PanelKind::Charts,
         title: "See how evolution works",
-        text: "Compare the fitness of the generations, see how the snakes of one differ, or which torques move \
+        text: "Compare the fitness of the generations, see how the snakes of a generation differ, or which torques move \
                their joints. Click any point to replay that snake.",
         try_it: "Click a point of the chart",
         is_done_by: |command| {

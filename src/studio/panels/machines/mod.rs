@@ -46,7 +46,7 @@ impl MachinesPanel {
                 first_steps(ui);
             }
             LinkState::Connecting(reason) => {
-                ui.horizontal(|ui| {
+                ui.horizontal_wrapped(|ui| {
                     ui.spinner();
                     ui.label(format!("Connecting to {}…", link.address));
                 });

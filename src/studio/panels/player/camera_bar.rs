@@ -35,7 +35,7 @@ pub(crate) fn view_bar(
                 let is_shown = is_on(&command).unwrap_or(false);
                 command_box(ui, is_shown, (action.name, action.hint), command);
             }
-            let closed = egui::Button::new("Closed cards again");
+            let closed = egui::Button::new("Show closed cards again");
             let closed = ui.add_enabled(!cards.closed.is_empty(), closed);
             if closed.on_disabled_hover_text("No card over the stage is closed").clicked() {
                 cards.closed.clear();
@@ -116,6 +116,6 @@ pub(crate) mod tests {
             let sent = clicked(&mut bar, action.name);
             assert_eq!(sent.last().cloned(), action.command(Situation::default()));
         }
-        assert!(bar.get_by_label("Closed cards again").accesskit_node().is_disabled());
+        assert!(bar.get_by_label("Show closed cards again").accesskit_node().is_disabled());
     }
 }

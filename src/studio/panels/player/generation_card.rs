@@ -22,7 +22,8 @@ pub(crate) fn generation_card(
 ) {
     let StageMode::Generation { size, .. } = mode else { return };
     ui.label(how_many(*size, shown));
-    ui.label(format!("Best: {}", best.staged.champion().reached()));
+    let champion = best.staged.champion();
+    ui.label(format!("Best: {}", champion.reached()));
     if let Some((part, parts)) = following.story_part() {
         explain(ui, &format!("Story, part {part} of {parts}"));
     }
@@ -30,10 +31,11 @@ pub(crate) fn generation_card(
         follow_box(ui, follows);
         let hint = "Show only the best snake of this generation";
         CommandButton::new("Only the best", hint, Command::Stage(StageCommand::Single)).show(ui);
-        let why = Command::Stage(StageCommand::RaceKnockOuts);
-        CommandButton::new("Why does it climb?", WHY_HINT, why).show(ui);
+        if champion.evaluation.behaviour.is_some_and(|of| of.steps_climbed > 0) {
+            let why = Command::Stage(StageCommand::RaceKnockOuts);
+            CommandButton::new("Why does it climb?", WHY_HINT, why).show(ui);
+        }
     });
-    let champion = best.staged.champion();
     if champion.evaluation.is_on_landing(&champion.trial.stairs) {
         after_landing(ui, best.staged.source());
     }
@@ -64,7 +66,7 @@ fn after_landing(ui: &mut egui::Ui, run: ChampionSource) {
             Command::Plan(PlanCommand::set(friction, ICE)),
         ),
         (
-            "Five values side by side",
+            "Five surfaces side by side",
             "The snake on five surfaces, from slippery to rough",
             Command::Stage(StageCommand::Sweep(friction.to_owned())),
         ),

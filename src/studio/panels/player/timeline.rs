@@ -73,7 +73,7 @@ impl TimelinePanel {
         span: TimelineSpan,
         run: u32,
     ) {
-        caption(ui, lane, (span, playback.is_playing, self.offers_why), run);
+        caption(ui, lane, (span, playback, self.offers_why), run);
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = theme::GAP / 2.0;
             player(ui, playback, span.end_s);
@@ -89,7 +89,7 @@ impl TimelinePanel {
 fn caption(
     ui: &mut egui::Ui,
     lane: &Lane,
-    (span, is_playing, offers_why): (TimelineSpan, bool, bool),
+    (span, playback, offers_why): (TimelineSpan, &Playback, bool),
     run: u32,
 ) {
     let staged = &lane.staged;
@@ -110,7 +110,7 @@ fn caption(
                 let text = egui::RichText::new("pulled with the mouse, not counted").color(theme::of(ui).problem);
                 ui.label(text).on_hover_text(hint);
             } else if !span.hides_future {
-                ending(ui, lane, (is_playing, offers_why));
+                ending(ui, lane, (playback, offers_why));
             }
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 let is_earlier = matches!(staged.source(), ChampionSource::Run(of) if of != run);
@@ -134,7 +134,7 @@ const SLOW: f32 = 0.5;
 
 /// Says how the trial of a lane ends, unless the snake lands in an honest way. Offers to play the moment that decides a failure, and to find
 /// out what a climb needs. From right to left.
-fn ending(ui: &mut egui::Ui, lane: &Lane, (is_playing, offers_why): (bool, bool)) {
+fn ending(ui: &mut egui::Ui, lane: &Lane, (playback, offers_why): (&Playback, bool)) {
     let Some(ending) = lane.history().and_then(|history| history.evaluation().ending) else {
         return;
     };
@@ -152,12 +152,16 @@ fn ending(ui: &mut egui::Ui, lane: &Lane, (is_playing, offers_why): (bool, bool)
             return;
         }
     } else {
-        let hint = "Play the moment that decides the trial, at half speed";
+        let hint =
+            "Say how it ended, and play the moment that decides the trial, at most at half speed";
         if ui.small_button("Why did it fail?").on_hover_text(hint).clicked() {
             let from_s = (f64::from(ending.at_s) - LEAD_S).max(0.0);
-            let play = (!is_playing).then_some(PlayerCommand::Toggle);
-            let commands = [PlayerCommand::SetSpeed(SLOW), PlayerCommand::Seek(from_s)];
-            Command::send_all(commands.into_iter().chain(play).map(Command::Player), ui);
+            let play = (!playback.is_playing).then_some(PlayerCommand::Toggle);
+            let slow = PlayerCommand::SetSpeed(playback.speed().min(SLOW));
+            let commands = [slow, PlayerCommand::Seek(from_s)].into_iter().chain(play);
+            let words = format!("{}. {}", ending.words(), ending.kind.choice().sentence);
+            let told = Command::Notify(format!("How it ended: {words}"));
+            Command::send_all(commands.map(Command::Player).chain([told]), ui);
         }
     }
     let tricks = ending.used().map(|trick| trick.choice());
@@ -403,10 +407,12 @@ mod tests {
         assert!(shows(&of_lane, "End: disqualified: "));
         let from_s = (lane.end_s() - LEAD_S).max(0.0) as f32;
         let commands = clicked(&mut of_lane, "Why did it fail?");
-        let [Command::Player(speed), Command::Player(PlayerCommand::Seek(to_s))] = &commands[..]
+        let [Command::Player(speed), Command::Player(PlayerCommand::Seek(to_s)), told] =
+            &commands[..]
         else {
             panic!("{commands:?}")
         };
+        assert!(matches!(told, Command::Notify(words) if words.contains("It was disqualified.")));
         assert_eq!(*speed, PlayerCommand::SetSpeed(SLOW));
         assert!((*to_s as f32 - from_s).abs() < 0.1, "{to_s} s, not {from_s} s");
         let hidden = TimelineSpan { hides_future: true, ..SPAN };

@@ -230,8 +230,8 @@ fn next_run(ui: &mut egui::Ui, run: &CurrentRun) {
 /// Draws the name of the snake from which a new run starts, if any, with a button for a run from scratch.
 fn founder(ui: &mut egui::Ui, run: &CurrentRun) {
     let Some(name) = run.next_founder() else { return };
-    ui.horizontal(|ui| {
-        ui.label(format!("A new run starts from \"{name}\""));
+    ui.horizontal_wrapped(|ui| {
+        ui.label(format!("\"New run\" starts from \"{name}\""));
         let hint = "Create the first generation of the next run at random";
         let forget = Command::Plan(PlanCommand::ForgetFounder);
         CommandButton::new("Start from scratch", hint, forget).small().show(ui);

@@ -1,6 +1,7 @@
 //! Progress of a run: generations, speed, remaining time and disqualifications.
 
 use bevy_egui::egui;
+use indicatif::HumanCount;
 
 use crate::studio::state::current_run::{CurrentRun, RunStatus};
 use crate::studio::ui::text_rows::weak;
@@ -39,7 +40,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     ui.label(text);
     let inside = match (run.run_hash, random_first) {
         (Some(_), _) => "finished".to_owned(),
-        (None, Some(random)) => format!("{done} of {random} random snakes first"),
+        (None, Some(random)) => format!("{done} of {random} random snakes"),
         (None, None) => evaluated(done, population, run.settings().evolution.population),
     };
     let hint = match random_first {
@@ -67,7 +68,8 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     if let Some(latest) = run.reports().last() {
         let (out, all, reasons) = (latest.disqualified, latest.evaluations, reasons_text(latest));
         let disqualified = weak(ui, format!("Disqualified: {out} of {all}{reasons}"));
-        let hint = "In the latest finished generation. The limits are in the Change panel";
+        let hint =
+            "In the latest finished generation. The limits are in the Change panel, under Advanced";
         ui.add(egui::Label::new(disqualified).wrap()).on_hover_text(hint);
     }
 }
@@ -83,8 +85,8 @@ fn evaluated(done: u32, all: u32, population: u32) -> String {
 /// larger than planned, such as the first of CMA-ES.
 fn finished_early(finished: usize, planned: u32, budget: u64) -> String {
     format!(
-        "Finished after {finished} generations: the limit of {} snakes is reached. {planned} generations were planned, but some had more snakes than usual",
-        with_thousands(budget)
+        "Finished after {finished} generations: the limit of {} snakes is reached. {planned} generations were planned, but some had more snakes than usual.",
+        HumanCount(budget)
     )
 }
 
@@ -95,16 +97,6 @@ fn random_first(settings: &Settings, finished: usize, has_founder: bool) -> Opti
     // The random snakes take at most a quarter of the run's evaluations.
     let most = u32::try_from(settings.evolution.budget() / 4).unwrap_or(u32::MAX);
     Some(cma_es.newborns.min(most)).filter(|random| is_first && *random > 0)
-}
-
-/// Formats a number with commas between its thousands: "5,980".
-fn with_thousands(number: u64) -> String {
-    let digits = number.to_string();
-    let is_before_comma = |index: usize| index > 0 && (digits.len() - index).is_multiple_of(3);
-    let with_comma = |(index, digit): (usize, char)| {
-        is_before_comma(index).then_some(',').into_iter().chain([digit])
-    };
-    digits.chars().enumerate().flat_map(with_comma).collect()
 }
 
 /// Returns the evaluations per second over the latest generations, if there are any.
@@ -190,7 +182,7 @@ mod tests {
     fn a_run_that_finished_early_says_what_ended_it_and_why_before_the_planned_number() {
         assert_eq!(
             finished_early(57, 60, 6000),
-            "Finished after 57 generations: the limit of 6,000 snakes is reached. 60 generations were planned, but some had more snakes than usual"
+            "Finished after 57 generations: the limit of 6,000 snakes is reached. 60 generations were planned, but some had more snakes than usual."
         );
     }
 
@@ -198,12 +190,6 @@ mod tests {
     fn a26_evaluations_are_those_of_new_snakes_if_others_survive() {
         assert_eq!(evaluated(197, 197, 200), "197 of 197 new snakes");
         assert_eq!(evaluated(7, 30, 30), "7 of 30 snakes");
-    }
-
-    #[test]
-    fn large_numbers_have_commas() {
-        let texts = [0, 999, 1000, 5980, 1_234_567].map(with_thousands);
-        assert_eq!(texts, ["0", "999", "1,000", "5,980", "1,234,567"]);
     }
 
     #[test]

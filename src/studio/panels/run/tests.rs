@@ -44,9 +44,10 @@ fn each_button_of_a_run_that_is_ready_runs_or_is_finished_sends_its_command() {
 fn the_founder_of_the_next_run_can_be_removed() {
     let mut run = run();
     let champion = snakes_core::save::shipped_champion().expect("well formed").champion;
-    run.start_next_from(&champion, "climber").expect("it fits");
+    run.start_next_from(&champion, "Generation 27 of another run, edited").expect("it fits");
     let commands = sent(&run, |harness| {
-        assert!(harness.query_by_label("A new run starts from \"climber\"").is_some());
+        assert_nothing_is_wider_than(harness, theme::PANEL_WIDTH);
+        assert!(shows(harness, "\"New run\" starts from \"Generation 27 of another run, edited\""));
         harness.get_by_label("Start from scratch").click();
     });
     assert_eq!(commands, [Command::Plan(PlanCommand::ForgetFounder)]);

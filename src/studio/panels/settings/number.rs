@@ -72,9 +72,11 @@ impl Sheet {
                     return sheet.slider_and_field(ui, &control, shown, range, width);
                 }
                 let part = range.parts.word();
+                // The hint says what happens without a value.
+                let without = shown.listed.setting.hint.split_once("Without a value, ");
                 let instead = match is_given {
                     true => format!("{part} by {part}"),
-                    false => "off: each snake has its own".to_owned(),
+                    false => without.map_or("off".to_owned(), |(_, of)| format!("off: {of}")),
                 };
                 ui.add(egui::Label::new(weak(ui, instead)).wrap());
                 None

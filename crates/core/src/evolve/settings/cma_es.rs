@@ -10,7 +10,7 @@ setting_group! {
         /// Standard deviation of the first generation, as a share of each gene's range.
         step: f32 = 0.3,
             number("Size of first mutations", 1.0e-6..=10.0)
-                .hint("How much snakes differ from the start of the search, as a share of each gene's range. Small values search nearby")
+                .hint("How much the first children differ from the snake at which the search starts, as a share of each gene's range. Small values: children are much like it")
                 .slider(0.01, 1.0)
                 .logarithmic_from(0.01)
                 .fixed(LEARNED);

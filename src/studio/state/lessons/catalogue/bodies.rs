@@ -10,14 +10,14 @@ use snakes_core::genome::BodyChange;
 pub(super) const PROTECTION: Lesson = Lesson {
     title: "What protection does for new bodies",
     question: "Why does evolution settle so soon on a body?",
-    story: "A body and its gait, its way of moving, can evolve together. The stage shows a snake, and its gait with a block \
-            more and a block less.",
-    to_try: "Guess, and watch the race. Then let bodies evolve for 24 generations of 60 snakes, twice: choosing by \
-             fitness alone, and with protection, where a new body competes only with bodies just as new.",
+    story: "A body and its gait, its way of moving, can evolve together. The stage shows a snake, and the same gait in \
+            bodies with one block more and one block less.",
+    to_try: "Guess, and watch the race. Then let bodies evolve for 24 generations of 60 snakes, twice: by fitness \
+             alone, and with protection. Then a body loses only to better bodies that are no older.",
     look_for: "How the same gait moves the three bodies. In the runs, how often the best snake has another body than the \
                best before it, and which run climbs further.",
     conclusion: "A new body is judged with the old gait, and most lose at once. Protection gives them time to adapt, \
-                 at a price: of 10 runs four times as long, 8 got less far with it.",
+                 but it costs progress: of 10 runs four times as long, 8 got less far with it than without.",
     scenes: &[
         LessonScene {
             label: "A block more, a block less",

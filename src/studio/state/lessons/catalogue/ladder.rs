@@ -7,23 +7,22 @@ use crate::studio::state::lessons::lesson::{
 /// Lesson on the ladder: stairs that become higher as the snakes improve.
 pub(super) const LADDER: Lesson = Lesson {
     title: "Why a ladder helps",
-    question: "Does it pay to begin with lower stairs?",
-    story: "Most random snakes do not get onto a steep first step: all look equally bad. The stage shows one snake on two \
-            flights.",
-    to_try: "Guess, and watch the race. Then let two runs of 54 generations evolve on the same stairs: one from the start, \
-             the other by way of lower stairs, which grow whenever most snakes of a generation succeed.",
+    question: "Does it help to begin with lower stairs?",
+    story: "Most random snakes do not get onto a high first step: all look equally bad. The stage shows one snake on two \
+            staircases.",
+    to_try: "Guess, and watch the race. Then let two runs of 54 generations evolve on the same stairs: one directly, the other by way of lower stairs, which grow whenever most snakes of a generation succeed.",
     look_for: "How far the same snake gets on low and on high steps. In the runs, when each line rises, and whether it gets \
                stuck.",
     conclusion: "Stairs that only some snakes climb tell good from bad, and a ladder looks for such stairs. It is not always \
                  needed: in ten runs each, the direct way reached the top 7 times, and the ladder 10 times.",
     scenes: &[
         LessonScene {
-            label: "One snake, two flights",
+            label: "One snake, two staircases",
             shows: Shows::Champion("climber"),
             question: furthest(
-                "It climbs the lower flight, and cannot get onto the first step of the higher one.",
+                "It climbs the lower staircase, but does not get onto the first step of the higher one.",
             ),
-            // Both flights have shallow treads, but their rises differ.
+            // Both staircases have shallow treads, but their rises differ.
             sides: &[
                 side("steps 0.2 m high", &[("stairs.tread_m", "0.8"), ("stairs.rise_m", "0.2")]),
                 side("steps 0.4 m high", &[("stairs.tread_m", "0.8"), ("stairs.rise_m", "0.4")]),

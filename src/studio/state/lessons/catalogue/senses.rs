@@ -10,7 +10,7 @@ pub(super) const ONE_MOTION: Lesson = Lesson {
             a snake on its own steps, 0.5 m high, on lower and on higher ones; then a snake whose blocks feel the ground.",
     to_try: "Guess, and watch the first race. Do the same with the second snake. Afterwards open the Senses panel \
              and choose Examine on 100 staircases.",
-    look_for: "Whether the motion changes with the stairs: the first snake moves its joints alike on all of them; the \
+    look_for: "Whether the motion changes with the stairs: the first snake moves its joints in the same way on all of them; the \
                second waits, pushes and turns as its blocks touch the steps.",
     conclusion: "A repeated motion may fit other stairs or not: of 100 staircases this snake climbs 61, the best of its \
                  kind 87. The second climbs 78, because it feels them: without senses only 28.",
@@ -19,8 +19,8 @@ pub(super) const ONE_MOTION: Lesson = Lesson {
             label: "A snake that feels only its joints",
             shows: Shows::Champion("climber"),
             question: furthest(
-                "Lower steps do not stop it, but steps 0.6 m high do: after five of them its motion and the steps no \
-                 longer fit.",
+                "On steps 0.4 m and 0.5 m high it reaches the landing; steps 0.6 m high stop it: after five of them its motion and \
+                 the steps no longer fit.",
             ),
             sides: &[
                 side("steps 0.4 m high", &[("stairs.rise_m", "0.4")]),
@@ -45,11 +45,11 @@ pub(super) const ONE_MOTION: Lesson = Lesson {
 pub(super) const BLINDFOLD: Lesson = Lesson {
     title: "Take away its eyes",
     question: "Which of its senses does a snake need?",
-    story: "This snake can sense the next step, contacts, tilt and motion. Its neurons need not use every sense. To find \
+    story: "This snake has sight (the next step), touch (contacts) and balance (tilt and motion). Its neurons need not use every sense. To find \
             out which it needs, researchers take one away: that sense keeps the value that it had at the start.",
     to_try: "Guess, and watch the snake with and without sight. Then guess what it does without touch and without \
              balance. The switches in the Senses panel do the same to any snake that senses, at any moment.",
-    look_for: "Which copies keep to the motion of the original, and which lose their way on the stairs. Click a block: the \
+    look_for: "Which copies keep to the motion of the original, and which fail on the stairs. Click a block: the \
                wiring in the Senses panel shows which senses its neurons read.",
     conclusion: "Evolution uses what helps. Watching a snake does not show which sense that is: its wiring gives a hint, and an \
                  experiment tells. Examine on 100 staircases, in the Senses panel, also takes away all of them at once.",
@@ -58,8 +58,8 @@ pub(super) const BLINDFOLD: Lesson = Lesson {
             label: "Without sight",
             shows: Shows::Champion("feeler"),
             question: furthest(
-                "Its neurons read no sense of the stairs ahead, so it moves exactly alike without sight: it feels \
-                 its way.",
+                "Its neurons read no sense of the stairs ahead, so it moves in exactly the same way without sight: it \
+                 feels its way.",
             ),
             sides: &[side("original", &[]), side("without sight", &[("senses.sight", "false")])],
         },
