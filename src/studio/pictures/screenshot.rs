@@ -5,8 +5,10 @@ use bevy::ecs::system::SystemParam;
 use bevy::image::Image;
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
+use bevy::render::renderer::RenderAdapterInfo;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::window::PrimaryWindow;
+use wgpu_types::DeviceType;
 
 use crate::studio::commands::ScreenshotArea;
 use crate::studio::scene::camera::{StageCamera, camera_components};
@@ -48,13 +50,14 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, (take, take_stage_pictures).chain().in_set(FrameSet::Draw));
 }
 
-/// Minimum width of a picture of the stage, in pixels.
+/// Minimum width of a picture of the stage, in pixels. A driver without a graphics card would draw it for half a minute, while the window
+/// stands still; its pictures are as large as the stage.
 const LEAST_WIDTH: u32 = 1920;
 
-/// Returns the size of a picture of a stage of this size, both in pixels: the smallest multiple with the minimum width.
-fn picture_size(stage: Vec2) -> UVec2 {
+/// Returns the size of a picture of a stage of this size, both in pixels: the smallest multiple with the minimum width of the device.
+fn picture_size(stage: Vec2, device: DeviceType) -> UVec2 {
     let stage = stage.max(Vec2::ONE).as_uvec2();
-    stage * LEAST_WIDTH.div_ceil(stage.x)
+    if device == DeviceType::Cpu { stage } else { stage * LEAST_WIDTH.div_ceil(stage.x) }
 }
 
 /// Takes a screenshot of the window at once. For one of the stage, spawns a second camera, unless one is at work: a software driver takes
@@ -63,7 +66,8 @@ fn take(
     mut requests: MessageReader<ScreenshotArea>,
     place: Single<&Transform, With<StageCamera>>,
     window: Single<&Window, With<PrimaryWindow>>,
-    (stage, at_work): (Res<StageArea>, Query<(), With<PendingScreenshot>>),
+    (stage, adapter): (Res<StageArea>, Res<RenderAdapterInfo>),
+    at_work: Query<(), With<PendingScreenshot>>,
     mut images: ResMut<Assets<Image>>,
     theme: Res<Theme>,
     mut commands: Commands,
@@ -76,7 +80,8 @@ fn take(
             }
             ScreenshotArea::Stage if !std::mem::take(&mut is_free) => {}
             ScreenshotArea::Stage => {
-                let size = picture_size(stage.in_window().size() * window.scale_factor());
+                let size = stage.in_window().size() * window.scale_factor();
+                let size = picture_size(size, adapter.device_type);
                 let format = TextureFormat::Rgba8UnormSrgb;
                 let picture = images.add(Image::new_target_texture(size.x, size.y, format, None));
                 commands.spawn((
@@ -149,7 +154,10 @@ mod tests {
         for (stage, picture) in
             [([895, 503], [2685, 1509]), ([1920, 1080], [1920, 1080]), ([2400, 900], [2400, 900])]
         {
-            assert_eq!(picture_size(UVec2::from(stage).as_vec2()), UVec2::from(picture));
+            let stage = UVec2::from(stage);
+            let size = |device| picture_size(stage.as_vec2(), device);
+            assert_eq!(size(DeviceType::IntegratedGpu), UVec2::from(picture));
+            assert_eq!(size(DeviceType::Cpu), stage, "without a graphics card");
         }
     }
 }

@@ -253,7 +253,7 @@ fn default_seeds() -> u64 {
 }
 
 /// The built-in studies: name and text of the definition.
-const BUILT_IN: [(&str, &str); 10] = [
+const BUILT_IN: [(&str, &str); 11] = [
     ("table1", include_str!("../../../../assets/studies/table1.ron")),
     ("methods", include_str!("../../../../assets/studies/methods.ron")),
     ("families", include_str!("../../../../assets/studies/families.ron")),
@@ -264,6 +264,7 @@ const BUILT_IN: [(&str, &str); 10] = [
     ("stairs", include_str!("../../../../assets/studies/stairs.ron")),
     ("ladder", include_str!("../../../../assets/studies/ladder.ron")),
     ("engines", include_str!("../../../../assets/studies/engines.ron")),
+    ("transfer", include_str!("../../../../assets/studies/transfer.ron")),
 ];
 
 /// Returns the studies that are built into the program.
