@@ -80,12 +80,18 @@ def observation_space(worlds: Worlds) -> spaces.Box:
 _LEAST_LIMIT = 1e-4
 
 
-def action_space(worlds: Worlds) -> spaces.Box:
-    """The ranges of target angles or torques."""
+def action_space(worlds: Worlds, is_normalized: bool) -> tuple[spaces.Box, np.ndarray]:
+    """The ranges of target angles or torques, or -1 to 1 for each; and the angle or torque of one unit of each part."""
     # An axis that cannot move gets a range, too, because wrappers that rescale actions divide by its width.
     limits = np.where(worlds.action_limits > 0, worlds.action_limits, _LEAST_LIMIT)
     limits = limits.astype(np.float32)
-    return spaces.Box(-limits, limits, dtype=np.float32)
+    units = limits if is_normalized else np.ones_like(limits)
+    return spaces.Box(-limits / units, limits / units, dtype=np.float32), units
+
+
+def in_units(actions: np.ndarray, units: np.ndarray) -> np.ndarray:
+    """Actions, one in a row, as angles or torques. Those of a wrong length stay, because the worlds refuse them by their shape."""
+    return actions * units if actions.shape[1:] == units.shape else actions
 
 
 def action_names(worlds: Worlds, actions: str) -> list[dict[str, Any]]:

@@ -18,6 +18,7 @@ from ._options import (
     action_space,
     check_render_mode,
     draw_seed,
+    in_units,
     make_worlds,
     observation_space,
     physics_rate_hz,
@@ -73,6 +74,7 @@ class SnakesAndStairsEnv(gymnasium.Env):
         steps_per_action: physics steps for which an action holds.
         stiffness_nm_per_rad, damping_nms_per_rad: of the servo; None for the middle of the preset's range of stiffness, and
             for the preset's damping.
+        normalized: whether each part of an action is from -1 to 1 of its range, as many learners expect, instead of an angle or torque.
         perturbation: None for the same start in every episode; True for the program's usual ranges; or the ranges of
             friction, rise, density, start_m, turn_deg, tread, step_rate, shove_m_s, of which missing ones are 0.
         disqualification_penalty: subtracted from the reward on disqualification, in units of the reward.
@@ -98,6 +100,7 @@ class SnakesAndStairsEnv(gymnasium.Env):
         steps_per_action: int = 1,
         stiffness_nm_per_rad: Optional[float] = None,
         damping_nms_per_rad: Optional[float] = None,
+        normalized: bool = False,
         perturbation: Union[None, bool, Mapping[str, float]] = None,
         disqualification_penalty: float = 0.0,
         render_mode: Optional[str] = None,
@@ -126,7 +129,7 @@ class SnakesAndStairsEnv(gymnasium.Env):
         )
         self._actions = actions
         self.observation_space = observation_space(self._worlds)
-        self.action_space = action_space(self._worlds)
+        self.action_space, self._units = action_space(self._worlds, normalized)
         #: Actions per simulated second.
         self.actions_per_s = physics_rate_hz(self._worlds, steps_per_action)
         fps = max(round(self.actions_per_s), 1)
@@ -201,6 +204,7 @@ class SnakesAndStairsEnv(gymnasium.Env):
         if actions.ndim != 2:
             shape = self.action_space.shape
             raise ValueError(f"action is of shape {actions.shape[1:]}; allowed: shape {shape}")
+        actions = in_units(actions, self._units)
         observations, rewards, terminated, truncated = self._worlds.step(_ALL, actions)
         ended, cut = bool(terminated[0]), bool(truncated[0])
         if self.render_mode == "human" and (ended or cut):

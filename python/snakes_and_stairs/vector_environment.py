@@ -17,6 +17,7 @@ from ._options import (
     action_space,
     check_render_mode,
     draw_seed,
+    in_units,
     make_worlds,
     observation_space,
     physics_rate_hz,
@@ -59,6 +60,7 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         steps_per_action: int = 1,
         stiffness_nm_per_rad: Optional[float] = None,
         damping_nms_per_rad: Optional[float] = None,
+        normalized: bool = False,
         perturbation: Union[None, bool, Mapping[str, float]] = None,
         disqualification_penalty: float = 0.0,
         threads: Optional[int] = None,
@@ -88,7 +90,7 @@ class SnakesAndStairsVectorEnv(VectorEnv):
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self._actions = actions
         self.single_observation_space = observation_space(self._worlds)
-        self.single_action_space = action_space(self._worlds)
+        self.single_action_space, self._units = action_space(self._worlds, normalized)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         #: Actions per simulated second.
@@ -197,6 +199,7 @@ class SnakesAndStairsVectorEnv(VectorEnv):
                 which = np.flatnonzero(begins).tolist()
                 raise RuntimeError(f"the episodes of worlds {which} are over: call reset() first")
             is_running = ~begins
+        actions = in_units(actions, self._units)
         observations, rewards, terminated, truncated = self._worlds.step(is_running, actions)
         if begins.any():
             observations = self._begin(begins.copy())

@@ -40,13 +40,30 @@ def wave(env):
 @pytest.mark.parametrize("perturbation", [None, True])
 @pytest.mark.parametrize("preset", ["climb", "report", "ice", "squishy", "bodies", "creatures", "neat"])
 def test_gymnasiums_checker_has_no_complaints(preset, actions, perturbation):
-    env = make(preset=preset, actions=actions, perturbation=perturbation)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        # The space of actions is in rad or N·m on purpose; gymnasium.wrappers.RescaleAction makes it -1 to 1.
-        warnings.filterwarnings("ignore", message=".*symmetric and normalized.*")
-        check_env(env.unwrapped)
-    env.close()
+    for normalized in [True, False]:
+        env = make(preset=preset, actions=actions, perturbation=perturbation, normalized=normalized)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            if not normalized:
+                # Angles and torques are in rad and N·m on purpose.
+                warnings.filterwarnings("ignore", message=".*symmetric and normalized.*")
+            check_env(env.unwrapped)
+        env.close()
+
+
+@pytest.mark.parametrize("actions", ["targets", "torques"])
+def test_normalized_actions_lead_to_the_bits_of_their_angles_or_torques(actions, tmp_path):
+    plain, normalized = (make(actions=actions, normalized=normalized) for normalized in [False, True])
+    assert np.array_equal(normalized.action_space.high, np.ones(8, dtype=np.float32))
+    gait = wave(normalized)
+    *_, of_normalized = episode(normalized, gait)
+    *_, of_plain = episode(plain, lambda step: gait(step) * plain.action_space.high)
+    assert of_normalized["evaluation"] == of_plain["evaluation"]
+    envs = gymnasium.make_vec("SnakesAndStairs-v0", num_envs=2, settings=SHORT, actions=actions, normalized=True)
+    assert np.array_equal(envs.single_action_space.high, np.ones(8, dtype=np.float32))
+    with pytest.raises(ValueError, match="shape"):
+        normalized.reset()
+        normalized.unwrapped.step(np.zeros(3, dtype=np.float32))
 
 
 def test_the_same_actions_lead_to_the_same_bits():
