@@ -412,7 +412,9 @@ mod tests {
         else {
             panic!("{commands:?}")
         };
-        assert!(matches!(told, Command::Notify(words) if words.contains("It was disqualified.")));
+        assert!(
+            matches!(told, Command::Notify(words) if words.contains("It broke a limit of the trial"))
+        );
         assert_eq!(*speed, PlayerCommand::SetSpeed(SLOW));
         assert!((*to_s as f32 - from_s).abs() < 0.1, "{to_s} s, not {from_s} s");
         let hidden = TimelineSpan { hides_future: true, ..SPAN };

@@ -10,14 +10,14 @@ use snakes_core::genome::BodyChange;
 pub(super) const PROTECTION: Lesson = Lesson {
     title: "What protection does for new bodies",
     question: "Why does evolution settle so soon on a body?",
-    story: "A body and its gait, its way of moving, can evolve together. The stage shows a snake, and the same gait in \
-            bodies with one block more and one block less.",
+    story: "A body and its gait, its way of moving, can evolve together. The stage shows a snake \
+            and its gait in bodies with one block more and one less.",
     to_try: "Guess, and watch the race. Then let bodies evolve for 24 generations of 60 snakes, twice: by fitness \
              alone, and with protection. Then a body loses only to better bodies that are no older.",
     look_for: "How the same gait moves the three bodies. In the runs, how often the best snake has another body than the \
                best before it, and which run climbs further.",
-    conclusion: "A new body is judged with the old gait, and most lose at once. Protection gives them time to adapt, \
-                 but it costs progress: of 10 runs four times as long, 8 got less far with it than without.",
+    conclusion: "A new body is judged with the old gait: most lose at once. Protection gives them time to adapt, \
+                 but costs progress: 8 of 10 runs four times as long got less far.",
     scenes: &[
         LessonScene {
             label: "A block more, a block less",

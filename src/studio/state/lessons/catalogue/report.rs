@@ -9,8 +9,7 @@ use crate::studio::state::lessons::prediction::{Asks, Question};
 pub(super) const FRICTION: Lesson = Lesson {
     title: "Friction: how much?",
     question: "How much grip do stairs need?",
-    story: "This program rebuilds the experiment of the report \"Evolution of Artificial Creatures in Stair Climbing\". There, the surface was tuned by eye, which took a long \
-            time. The stage shows the same snake on a surface like ice (friction 0.1), on its own surface (1) and on a \
+    story: "This program rebuilds an experiment in which the surface was tuned by eye, which took a long time. The stage shows the same snake on a surface like ice (friction 0.1), on its own surface (1) and on a \
             much rougher surface (5).",
     to_try: "Guess which snake gets furthest, then watch the race. Afterwards select the original, go back to \
              the start, open the Change panel and drag Friction: a copy of the snake starts beside it with the new value.",
@@ -52,8 +51,8 @@ pub(super) const FRICTION: Lesson = Lesson {
 pub(super) const FRAME_RATE: Lesson = Lesson {
     title: "Frame rate and physics steps",
     question: "Why did the best snake climb on one computer and fall on another?",
-    story: "In the experiment that this program rebuilds, forces were applied once per drawn frame. Moving the window slowed the \
-            drawing and the snake. The stage shows the same genome with its own 60 physics steps per second, with \
+    story: "In the rebuilt experiment, forces were applied once per drawn frame. Moving the window slowed \
+            the drawing and the snake. The stage shows the same genome with its own 60 physics steps per second, with \
             120 and 240.",
     to_try: "Watch the race. Then choose \"Another snake at two playback speeds\" and play it to its end at two speeds, \
              for example × 1 and × 4 (the field with × below the stage). You can also turn on everything in Show to \
@@ -61,8 +60,8 @@ pub(super) const FRAME_RATE: Lesson = Lesson {
     look_for: "In the race, where each snake ends. At each playback speed, all digits of the end position, and \
                the hash of the motion: sixteen characters (0 to 9 and a to f) that summarise every bit of each \
                block's position after every physics step.",
-    conclusion: "There, the computer's speed changed the physics steps, and so the motion. Here every physics step has \
-                 the same length: a slow computer only shows fewer frames of the same climb. Some snakes climb at any step rate.",
+    conclusion: "There, a slow computer changed the physics steps, and so the motion. Here it only shows fewer frames \
+                 of the same climb.",
     scenes: &[
         LessonScene {
             label: "More physics steps per second",
@@ -97,7 +96,7 @@ pub(super) const JOINT_LIMITS: Lesson = Lesson {
     title: "Limits on the joints",
     question: "Does it help evolution to restrict the joints, or does it hinder?",
     story: "A joint that can turn all the way round allows more movements, and it can fold the snake into itself. \
-            In the experiment that this program rebuilds, each joint had a maximum angle, chosen at random for each genome.",
+            In the rebuilt experiment, each joint had a maximum angle, chosen at random for each genome.",
     to_try: "Run evolution twice for six generations of 120 snakes: with limits like those of that experiment, and with limits of \
              172°, which hardly restrict a joint.",
     look_for: "The number of disqualified snakes, the distance of the best one, and where that lies in the race \
@@ -130,8 +129,7 @@ pub(super) const JOINT_LIMITS: Lesson = Lesson {
 pub(super) const MUTATIONS: Lesson = Lesson {
     title: "Mutations: how fast should they shrink?",
     question: "What happens to the progress of a run when its mutations become smaller?",
-    story: "Children differ from their parent by random changes within a mutation range. In the experiment that this program rebuilds, this \
-            range halved with each generation: 100, 50, 25 N·m and so on. Here one run does the same; in a second run it shrinks by \
+    story: "Children differ from their parent by random changes within a mutation range. In the rebuilt experiment, this range halved with each generation: 100, 50, 25 N·m and so on. Here one run does the same; in a second run it shrinks by \
             only 5 % each time.",
     to_try: "Run evolution twice for fourteen generations: with a range that halves, and with one that shrinks \
              slowly.",
@@ -160,7 +158,7 @@ pub(super) const MUTATIONS: Lesson = Lesson {
 pub(super) const REPETITION: Lesson = Lesson {
     title: "Repeating a run",
     question: "Does a run give the same result when you repeat it?",
-    story: "In the experiment that this program rebuilds, the same forces gave different results from run to run and from computer \
+    story: "In the rebuilt experiment, the same forces gave different results from run to run and from computer \
             to computer. Results could not be checked, work could not be shared between computers, and runs \
             were repeated only to discard outliers.",
     to_try: "Repeat the same run with one and with two snakes computed at a time. Then repeat it with the friction \

@@ -19,8 +19,8 @@ pub(super) const ONE_MOTION: Lesson = Lesson {
             label: "A snake that feels only its joints",
             shows: Shows::Champion("climber"),
             question: furthest(
-                "On steps 0.4 m and 0.5 m high it reaches the landing; steps 0.6 m high stop it: after five of them its motion and \
-                 the steps no longer fit.",
+                "On steps 0.4 m and 0.5 m high it reaches the landing; five steps 0.6 m high \
+                 stop it: motion and steps no longer fit.",
             ),
             sides: &[
                 side("steps 0.4 m high", &[("stairs.rise_m", "0.4")]),
