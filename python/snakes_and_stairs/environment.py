@@ -142,7 +142,8 @@ class SnakesAndStairsEnv(gymnasium.Env):
 
     @property
     def action_parts(self) -> list[dict[str, Any]]:
-        """Index, name, unit and greatest magnitude of each part of an action; 0 for an axis that cannot move."""
+        """Index, name, unit and greatest angle or torque of each part of an action, for which 1 stands if actions are normalized; 0 for an
+        axis that cannot move."""
         return action_names(self._worlds, self._actions)
 
     @property

@@ -115,7 +115,7 @@ class SnakesAndStairsVectorEnv(VectorEnv):
 
     @property
     def action_parts(self) -> list[dict[str, Any]]:
-        """Index, name, unit and greatest magnitude of each part of an action; 0 for an axis that cannot move."""
+        """Index, name, unit and limit of each part of an action: see the single environment."""
         return action_names(self._worlds, self._actions)
 
     @property

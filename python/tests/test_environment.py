@@ -59,8 +59,16 @@ def test_normalized_actions_lead_to_the_bits_of_their_angles_or_torques(actions,
     *_, of_normalized = episode(normalized, gait)
     *_, of_plain = episode(plain, lambda step: gait(step) * plain.action_space.high)
     assert of_normalized["evaluation"] == of_plain["evaluation"]
-    envs = gymnasium.make_vec("SnakesAndStairs-v0", num_envs=2, settings=SHORT, actions=actions, normalized=True)
-    assert np.array_equal(envs.single_action_space.high, np.ones(8, dtype=np.float32))
+    worlds = [
+        gymnasium.make_vec("SnakesAndStairs-v0", num_envs=2, settings=SHORT, actions=actions, normalized=normalized)
+        for normalized in [True, False]
+    ]
+    for envs, unit in zip(worlds, [1, plain.action_space.high]):
+        envs.reset(seed=1)
+        seen = [envs.step(np.stack([gait(step) * unit] * 2))[0] for step in range(40)]
+        envs.seen = np.array(seen)
+    assert np.array_equal(worlds[0].single_action_space.high, np.ones(8, dtype=np.float32))
+    assert np.array_equal(worlds[0].seen, worlds[1].seen)
     with pytest.raises(ValueError, match="shape"):
         normalized.reset()
         normalized.unwrapped.step(np.zeros(3, dtype=np.float32))

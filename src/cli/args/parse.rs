@@ -58,13 +58,21 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Parsed, Cl
     }
 }
 
-/// Returns the row of [`EARLIER_NAMES`] of the word that the error is about.
-fn earlier_name(error: &clap::Error) -> Option<&(&str, &str)> {
+/// Returns the row of [`EARLIER_NAMES`] of the word that the error is about, unless a command stands before it.
+fn earlier_name<'e>(
+    error: &clap::Error,
+    arguments: &[OsString],
+) -> Option<&'e (&'static str, &'static str)> {
     let words = [ContextKind::InvalidSubcommand, ContextKind::InvalidArg];
-    words.into_iter().filter_map(|kind| error.get(kind)).find_map(|word| match word {
-        ContextValue::String(word) => EARLIER_NAMES.iter().find(|(earlier, _)| word == earlier),
-        _ => None,
-    })
+    let named =
+        words.into_iter().filter_map(|kind| error.get(kind)).find_map(|word| match word {
+            ContextValue::String(word) => EARLIER_NAMES.iter().find(|(earlier, _)| word == earlier),
+            _ => None,
+        })?;
+    let line = CommandLine::command();
+    let is_command = |word: &OsString| line.get_subcommands().any(|of| *word == *of.get_name());
+    let mut before = arguments.iter().skip(1).take_while(|word| *word != named.0);
+    (!before.any(is_command)).then_some(named)
 }
 
 /// Refuses paths that begin with `~`, which a shell replaces only at the beginning of a word and without quotes. Otherwise `--out=~/runs`
@@ -94,7 +102,7 @@ fn one_line(error: &clap::Error, arguments: &[OsString]) -> String {
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => return lists_to_show(),
         _ => (),
     }
-    if let Some((earlier, now)) = earlier_name(error) {
+    if let Some((earlier, now)) = earlier_name(error, arguments) {
         return format!("snakes {earlier} is now: snakes {now}");
     }
     let text = error.render().to_string();
@@ -188,6 +196,7 @@ pub(super) mod tests {
         // A value of a flag is no command.
         assert!(asked("--out figures --no-render").is_ok());
         assert!(refusal("run --out figures --polulation 3").contains("--polulation"));
+        assert!(!refusal("run families").contains("is now"), "a command stands before it");
     }
 
     #[test]

@@ -25,7 +25,7 @@ use snakes_lab::run::{
     Ancestor, BackgroundRun, Evaluator, Exploration, GenerationReport, RunSource,
 };
 
-pub(crate) use compared_runs::{ComparedRuns, DamagedRun, ListedRun, MOST_COMPARED};
+pub(crate) use compared_runs::{ComparedRuns, ListedRun, MOST_COMPARED, UnreadableRun};
 pub(crate) use live_changes::news_of;
 
 /// Number of latest generations whose ten best snakes are kept.
@@ -163,8 +163,8 @@ impl CurrentRun {
     }
 
     /// Returns the runs of the saves folder that cannot be read.
-    pub fn damaged_runs(&self) -> &[DamagedRun] {
-        &self.others.damaged
+    pub fn unreadable_runs(&self) -> &[UnreadableRun] {
+        &self.others.unreadable
     }
 
     /// Returns the reports of the finished generations, the first generation first.

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use super::current_run::{CurrentRun, DamagedRun, RunStatus};
+use super::current_run::{CurrentRun, RunStatus, UnreadableRun};
 use super::options::Options;
 use crate::studio::commands::{Command, RunCommand};
 use crate::studio::ui::notifications::Notices;
@@ -34,8 +34,8 @@ fn open(
     let Some(listed) = run.listed() else { return };
     *is_done = true;
     let latest = listed.filter(|of| of.run.finished > 0).max_by_key(|of| of.run.saved_at);
-    let later = |of: &&DamagedRun| latest.is_none_or(|latest| of.saved_at > latest.run.saved_at);
-    let damaged = run.damaged_runs().iter().filter(later).max_by_key(|of| of.saved_at);
+    let later = |of: &&UnreadableRun| latest.is_none_or(|latest| of.saved_at > latest.run.saved_at);
+    let damaged = run.unreadable_runs().iter().filter(later).max_by_key(|of| of.saved_at);
     notices.problems(damaged.map(|of| format!("The latest run cannot be opened: {}", of.problem)));
     let latest = latest.map(|of| (of.run.clone(), offer(&of.run, &of.name)));
     if run.status() != RunStatus::Ready {

@@ -380,7 +380,7 @@ fn a_study_has_its_champions_judged_in_other_engines_and_continues_with_what_is_
     };
     let refused = perform(OsStr::new("no-such-python"));
     let said = String::from_utf8_lossy(&refused.stderr).trim_end().to_owned();
-    assert!(said.starts_with("error: the suite mujoco needs Python with MuJoCo: "), "{said}");
+    assert!(said.starts_with("error: MuJoCo needs Python with its package: "), "{said}");
     let value = |name: &str| -> f64 {
         let output = perform(python.get_program());
         let text = String::from_utf8_lossy(&output.stdout).into_owned();

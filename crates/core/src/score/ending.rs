@@ -13,7 +13,7 @@ choices! {
         Landed = "landed", "landed", "It is on the landing.";
         OffTheSide = "off-the-side", "fell off the side", "It left the stairs over an edge and did not come back; the step is the one that it left.";
         FellBack = "fell-back", "fell back",
-            "It had climbed higher, but fell and did not get back up. The step is the one on which it ended.";
+            "It had climbed higher, but fell and did not get back up. The step is the one on which it ended, 0 on the ground before the stairs.";
         Stuck = "stuck", "stuck at a riser", "It got no further for the last three seconds, and its foremost block is at the riser with this number.";
         Beside = "beside", "passed the stairs", "It is beside the stairs, on which it never was.";
         LeftTheGround = "left-the-ground", "left the ground", "It has been in the air for longer than a fall from the highest step takes.";

@@ -76,8 +76,8 @@ impl Judge {
 pub enum JudgeError {
     /// Python or the judge's package is missing.
     #[error(
-        "the suite {} needs Python with {}: {python}: {reason}; install it with `pip install {}`, or name another Python in \
-         {}", judge.name, judge.title, judge.package, process::PYTHON_VARIABLE
+        "{} needs Python with its package: {python}: {reason}; install it with `pip install {}`, or name another Python in {}",
+        judge.title, judge.package, process::PYTHON_VARIABLE
     )]
     Missing {
         /// The judge.

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::definition::{Goal, Study};
+use super::definition::{Examined, Goal, Study};
 use super::measure::Measure;
 use super::plans::is_short_for;
 use super::values::{Form, of_judge, of_suite, value};
@@ -35,6 +35,16 @@ impl Study {
         within("seeds", self.seeds, SEEDS)?;
         within("first_seed", self.first_seed, 0..=u64::MAX - self.seeds)?;
         within("number of arms", self.arms.len(), 1..=1000)?;
+        if self.arms.iter().all(|arm| arm.examined == Examined::Never) {
+            for (field, is_given) in
+                [("suites", !self.suites.is_empty()), ("judges", !self.judges.is_empty())]
+            {
+                if is_given {
+                    let allowed = "none, because no arm has its champions examined";
+                    return Err(Invalid::new(field, "given", allowed));
+                }
+            }
+        }
         for (index, arm) in self.arms.iter().enumerate() {
             name("arms.name", &arm.name)?;
             if self.arms[..index].iter().any(|other| other.name == arm.name) {
@@ -93,7 +103,7 @@ impl Study {
         (self.show, self.compare) = (show, compare);
     }
 
-    /// Refuses a value that does not exist, or that only a suite measures which the study does not use.
+    /// Refuses a value that does not exist, or that only a suite or a judge measures which the study does not name.
     fn check_measured(&self, field: &str, name: &str) -> Result<(), Invalid> {
         value(field, name)?;
         let is_of = |suite: &&ExamSuite| {

@@ -221,11 +221,13 @@ fn judges_by_name<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Vec<&'static Judge>, D::Error> {
     let names = Vec::<String>::deserialize(deserializer)?;
-    let named = |name: &String| {
+    if let Some(unknown) = names.iter().find(|name| Judge::named(name).is_none()) {
         let allowed = JUDGES.iter().map(|judge| judge.name).collect::<Vec<_>>().join(", ");
-        Judge::named(name).ok_or_else(|| Invalid::new("judges", format!("{name:?}"), allowed))
-    };
-    names.iter().map(named).collect::<Result<_, _>>().map_err(D::Error::custom)
+        let refused = Invalid::new("judges", format!("{unknown:?}"), allowed);
+        return Err(D::Error::custom(refused));
+    }
+    let is_named = |judge: &&Judge| names.iter().any(|name| name == judge.name);
+    Ok(JUDGES.iter().filter(is_named).collect())
 }
 
 /// Returns the suites with these names, each once, in the usual order of suites.

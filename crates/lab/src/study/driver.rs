@@ -13,7 +13,7 @@ use crate::export::mjcf;
 use crate::plot;
 use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::{HeadlessError, say};
-use crate::run::judge::{Court, Judge, judge_trials};
+use crate::run::judge::{Court, Judge, JudgeError, judge_trials};
 use crate::run::progress_bar::{bar_of, beneath_bar, with_bar};
 use crate::run::{Evaluator, RunControl, whole_runs};
 use snakes_core::check::{Invalid, within};
@@ -78,8 +78,6 @@ pub fn perform(
     let planned = study.planned()?;
     within("runs", planned.len(), 1..=MAX_STUDY_RUNS).map_err(SaveError::Study)?;
     let keeps_champions = !study.suites.is_empty() || !study.judges.is_empty();
-    let mut courts =
-        study.judges.iter().map(|judge| Court::start(judge)).collect::<Result<Vec<_>, _>>()?;
     if keeps_champions {
         SavesFolder::find(Some(&files.champions)).prepare()?;
     }
@@ -93,6 +91,17 @@ pub fn perform(
                 || files.champion(arm, run.seed).exists()
         })
     };
+    // A missing judge is reported before the first run, but results that are complete are printed without it.
+    let is_needed = |judge: &&&'static Judge| {
+        planned.iter().any(|planned| {
+            planned.arm.examined != Examined::Never
+                && planned.result(&finished).is_none_or(|run| {
+                    run.number("fitness").is_some() && left_judges(study, run).contains(judge)
+                })
+        })
+    };
+    let judges = study.judges.iter().filter(is_needed);
+    let mut courts = judges.map(|judge| Court::start(judge)).collect::<Result<Vec<_>, _>>()?;
     let left: Vec<&PlannedRun<'_>> = planned.iter().filter(|run| !is_done(run)).collect();
     say(&format!("{}: {} of {} runs left", study.name, left.len(), planned.len()));
     let bar = bar_of(left.iter().map(|run| run.simulations()).sum(), "simulations");
@@ -213,13 +222,19 @@ fn examine_champions(
                 results.extend(found);
             }
             let simulated: u32 = results.iter().map(|result| result.trials + 1).sum();
-            let simulations = run.number("simulations").map(|before| before + f64::from(simulated));
-            simulations
-                .map(|all| run.values.insert("simulations".to_owned(), StudyValue::Number(all)));
+            add_simulations(run, simulated);
             add_exam(&mut run.values, &results);
         }
     }
     Ok(())
+}
+
+/// Adds trials to the number of simulations of a run, if that is known.
+fn add_simulations(run: &mut StudiedRun, trials: u32) {
+    if let Some(before) = run.number("simulations") {
+        let all = StudyValue::Number(before + f64::from(trials));
+        run.values.insert("simulations".to_owned(), all);
+    }
 }
 
 /// Returns the judges of the study for which a run has no results.
@@ -228,8 +243,8 @@ fn left_judges(study: &Study, run: &StudiedRun) -> Vec<&'static Judge> {
     study.judges.iter().copied().filter(is_left).collect()
 }
 
-/// Examines champions by the judges whose results are missing, and adds the results to their runs. Judges are no part of a champion's
-/// file. Each result is stored at once.
+/// Examines champions by the judges whose results are missing, and adds the results to their runs in the study's file, each
+/// at once.
 fn judge_champions(
     study: &Study,
     files: &StudyFiles,
@@ -258,10 +273,14 @@ fn judge_champions(
                 let champion = load_champion(&path)?.champion;
                 let bar = bar_of(judge_trials().into(), "trials");
                 let work = || court.examine(&champion, &model, evaluator, control);
-                let result = with_bar(&bar, control, work)?;
-                let before = run.number("simulations").unwrap_or(0.0);
-                let all = StudyValue::Number(before + f64::from(judge_trials()));
-                run.values.insert("simulations".to_owned(), all);
+                let result = with_bar(&bar, control, work);
+                // The interrupt key may have ended the judge's process, too.
+                let cancelled = |error| match control.is_cancelled() {
+                    true => JudgeError::Cancelled,
+                    false => error,
+                };
+                let result = result.map_err(cancelled)?;
+                add_simulations(run, judge_trials());
                 add_judged(&mut run.values, &result);
                 store_study(&files.ron, finished)?;
             }

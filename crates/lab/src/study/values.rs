@@ -219,7 +219,7 @@ const OF_SUITE: [(&str, &str, usize, &str); 5] = [
 
 /// Values of each judge: suffix of the name, suffix of the title, digits, description.
 const OF_JUDGE: [(&str, &str, usize, &str); 5] = [
-    ("", "", 1, "Landings of 100 trials"),
+    ("", "", 1, "Landings per 100 trials"),
     ("_trials", " trials", 0, "Number of trials"),
     ("_climbed", " climbed", 0, "Trials that climb at least three steps"),
     ("_way", " way", 2, "Median share of the way from the start to the landing"),

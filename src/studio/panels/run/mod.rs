@@ -8,7 +8,7 @@ use bevy_egui::egui;
 use super::settings::Sheet;
 use crate::studio::commands::panel::PanelKind;
 use crate::studio::commands::{Command, PlanCommand, RunCommand, WindowCommand};
-use crate::studio::state::current_run::{CurrentRun, DamagedRun, ListedRun, RunStatus, news_of};
+use crate::studio::state::current_run::{CurrentRun, ListedRun, RunStatus, UnreadableRun, news_of};
 use crate::studio::ui::buttons::{CommandButton, accent_button};
 use crate::studio::ui::number_field::NumberField;
 use crate::studio::ui::text_rows::{explain, folded, problem, row, title_text, weak};
@@ -288,10 +288,10 @@ fn earlier_runs(ui: &mut egui::Ui, run: &CurrentRun) {
             return explain(ui, "Loading…");
         };
         let mut earlier = listed.filter(|of| of.run.finished > 0).peekable();
-        for DamagedRun { problem, .. } in run.damaged_runs() {
+        for UnreadableRun { problem, .. } in run.unreadable_runs() {
             explain(ui, &format!("A run cannot be read: {problem}"));
         }
-        if earlier.peek().is_none() && run.damaged_runs().is_empty() {
+        if earlier.peek().is_none() && run.unreadable_runs().is_empty() {
             explain(ui, "There are no other runs.");
         }
         for ListedRun { run: summary, name, .. } in earlier {

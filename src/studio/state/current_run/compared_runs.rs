@@ -21,7 +21,7 @@ pub(crate) struct ListedRun {
 
 /// A run of the saves folder that cannot be read.
 #[derive(Debug)]
-pub(crate) struct DamagedRun {
+pub(crate) struct UnreadableRun {
     /// The file that cannot be read, and the reason.
     pub problem: String,
     /// Time of the last change: see [`saved_at`].
@@ -31,11 +31,11 @@ pub(crate) struct DamagedRun {
 /// Runs in the saves folder, and those among them that are compared with the current run.
 #[derive(Debug, Default)]
 pub(crate) struct ComparedRuns {
-    listing: Option<BackgroundTask<(Vec<ListedRun>, Vec<DamagedRun>)>>,
+    listing: Option<BackgroundTask<(Vec<ListedRun>, Vec<UnreadableRun>)>>,
     /// All runs in the saves folder; `None` until they are listed.
     pub runs: Option<Vec<ListedRun>>,
     /// Runs of the saves folder that cannot be read.
-    pub damaged: Vec<DamagedRun>,
+    pub unreadable: Vec<UnreadableRun>,
     /// Runs that are compared with the current one.
     pub compared: Vec<ComparedCurve>,
     /// Version number, which every change increments.
@@ -74,11 +74,11 @@ impl ComparedRuns {
                 let settings = settings_in_words(&run.plan);
                 ListedRun { name: name_of_listed(&run, &settings), run, settings }
             };
-            let (mut runs, mut damaged) = (Vec::new(), Vec::new());
+            let (mut runs, mut unreadable) = (Vec::new(), Vec::new());
             for (folder, run) in saves.all_runs() {
                 match run {
                     Ok(run) => runs.push(listed(run)),
-                    Err(error) => damaged.push(DamagedRun {
+                    Err(error) => unreadable.push(UnreadableRun {
                         problem: error.to_string(),
                         saved_at: saved_at(&folder),
                     }),
@@ -89,7 +89,7 @@ impl ComparedRuns {
                 (name, difference)
             });
             tell_apart(names);
-            (runs, damaged)
+            (runs, unreadable)
         });
         self.listing =
             Some(listing.map_err(|error| format!("The runs cannot be listed: {error}"))?);
@@ -120,8 +120,8 @@ impl ComparedRuns {
     /// Receives the results of the background tasks: the list of runs, and the runs to compare.
     pub fn take_in(&mut self) {
         if let Some(listed) = BackgroundTask::take_result(&mut self.listing) {
-            let (runs, damaged) = listed.unwrap_or_default();
-            (self.runs, self.damaged) = (Some(runs), damaged);
+            let (runs, unreadable) = listed.unwrap_or_default();
+            (self.runs, self.unreadable) = (Some(runs), unreadable);
             self.version += 1;
         }
         for run in &mut self.compared {
