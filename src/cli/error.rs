@@ -10,7 +10,6 @@ use snakes_core::check::Invalid;
 use snakes_core::save::SaveError;
 use snakes_lab::export::ExportError;
 use snakes_lab::run::headless::HeadlessError;
-use snakes_lab::run::judge::JudgeError;
 use snakes_lab::run::verify::VerifyError;
 
 /// An error of the command line, in one line.
@@ -68,9 +67,6 @@ pub enum CliError {
     /// A champion could not be exported.
     #[error(transparent)]
     Export(#[from] ExportError),
-    /// Another physics engine could not be used.
-    #[error(transparent)]
-    Judge(#[from] JudgeError),
     /// A film could not be made.
     #[cfg(feature = "studio")]
     #[error(transparent)]

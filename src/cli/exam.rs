@@ -20,9 +20,7 @@ use snakes_core::world::WorldPlan;
 use snakes_lab::export::mjcf;
 use snakes_lab::run::exam::{exam_trials, examine};
 use snakes_lab::run::headless::HeadlessError;
-use snakes_lab::run::judge::{
-    CLIMBED_STEPS, Court, JUDGES, Judge, JudgeError, JudgeResult, judge_trials,
-};
+use snakes_lab::run::judge::{CLIMBED_STEPS, Court, JUDGES, Judge, JudgeResult, judge_trials};
 use snakes_lab::run::markdown::markdown_table;
 use snakes_lab::run::progress_bar::with_bar;
 use snakes_lab::run::{Evaluator, RunControl, short};
@@ -50,8 +48,11 @@ pub fn exam(args: &Args, wanted: &ExamArgs) -> Result<(), CliError> {
     let first = files.first().map_or(Path::new(""), PathBuf::as_path);
     let evaluator = evaluator(args, "exam", first)?;
     let control = cancel_on_interrupt()?;
-    let mut courts =
-        judges.into_iter().map(Court::start).collect::<Result<Vec<_>, JudgeError>>()?;
+    let mut courts = judges
+        .into_iter()
+        .map(Court::start)
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(HeadlessError::from)?;
     let mut rows = Vec::new();
     let mut examine_one = |file: &PathBuf, loaded: LoadedChampion| -> Result<(), CliError> {
         let matches = equals_record(file, &loaded)?;
@@ -134,10 +135,7 @@ fn judged(
     let bar = ProgressBar::new(judge_trials().into());
     let model = |plan: &WorldPlan| mjcf("snake", plan, &[]);
     let examined = || court.examine(&loaded.champion, &model, evaluator, control);
-    match with_bar(&bar, control, examined) {
-        Err(JudgeError::Cancelled) => Err(HeadlessError::Cancelled { kept: None }.into()),
-        other => trusted(evaluator, other),
-    }
+    trusted(evaluator, with_bar(&bar, control, examined).map_err(HeadlessError::from))
 }
 
 /// A row of the table: the results of a champion.

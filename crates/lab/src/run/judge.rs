@@ -179,7 +179,12 @@ impl Court {
         let here = exam_ends(&champion.genome, &conditions, evaluator, control)?;
         let play = |condition| {
             control.wait_while_paused()?;
-            let end = self.play(champion, condition, model, control)?;
+            // The interrupt key may end the judge's process, too, which is no failure then.
+            let ended = |error| match control.is_cancelled() {
+                true => JudgeError::Cancelled,
+                false => error,
+            };
+            let end = self.play(champion, condition, model, control).map_err(ended)?;
             control.count_one();
             Ok(end)
         };

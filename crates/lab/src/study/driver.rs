@@ -13,7 +13,7 @@ use crate::export::mjcf;
 use crate::plot;
 use crate::run::exam::{exam_trials, examine};
 use crate::run::headless::{HeadlessError, say};
-use crate::run::judge::{Court, Judge, JudgeError, judge_trials};
+use crate::run::judge::{Court, Judge, judge_trials};
 use crate::run::progress_bar::{bar_of, beneath_bar, with_bar};
 use crate::run::{Evaluator, RunControl, whole_runs};
 use snakes_core::check::{Invalid, within};
@@ -273,13 +273,7 @@ fn judge_champions(
                 let champion = load_champion(&path)?.champion;
                 let bar = bar_of(judge_trials().into(), "trials");
                 let work = || court.examine(&champion, &model, evaluator, control);
-                let result = with_bar(&bar, control, work);
-                // The interrupt key may have ended the judge's process, too.
-                let cancelled = |error| match control.is_cancelled() {
-                    true => JudgeError::Cancelled,
-                    false => error,
-                };
-                let result = result.map_err(cancelled)?;
+                let result = with_bar(&bar, control, work)?;
                 add_simulations(run, judge_trials());
                 add_judged(&mut run.values, &result);
                 store_study(&files.ron, finished)?;
