@@ -9,6 +9,7 @@ use bevy::anti_alias::smaa::{Smaa, SmaaPreset};
 use bevy::camera::Hdr;
 use bevy::core_pipeline::prepass::{DepthPrepass, NormalPrepass};
 use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::image::ImageSampler;
 use bevy::light::DirectionalLightShadowMap;
 use bevy::pbr::{ContactShadows, ScreenSpaceAmbientOcclusion};
 use bevy::post_process::bloom::Bloom;
@@ -121,7 +122,8 @@ impl FrameWatch {
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<StageQuality>()
         .add_systems(PreStartup, suit_device)
-        .add_systems(Update, equip_cameras.in_set(FrameSet::Draw));
+        .add_systems(Update, equip_cameras.in_set(FrameSet::Draw))
+        .add_systems(Last, filter_plainly);
 }
 
 /// Adds the choice of a lower step for a window whose frames take too long.
@@ -140,6 +142,24 @@ fn for_device(device: DeviceType) -> Quality {
 
 fn suit_device(mut quality: ResMut<StageQuality>, adapter: Res<RenderAdapterInfo>) {
     quality.suit(adapter.0.device_type);
+}
+
+/// Takes anisotropic filtering from new textures without a graphics card. Mesa's software driver adds up every texel below a pixel. With
+/// several samples per pixel, the pixels along the edges of large, flat surfaces cover millions of them, and a frame took minutes.
+fn filter_plainly(
+    adapter: Res<RenderAdapterInfo>,
+    mut events: MessageReader<AssetEvent<Image>>,
+    mut images: ResMut<Assets<Image>>,
+) {
+    for event in events.read().filter(|_| adapter.0.device_type == DeviceType::Cpu) {
+        let AssetEvent::Added { id } = event else { continue };
+        // The renderer takes the texture later in the same frame, so it needs no second notice.
+        if let Some(ImageSampler::Descriptor(sampler)) =
+            images.get_mut_untracked(*id).map(|image| &mut image.sampler)
+        {
+            sampler.anisotropy_clamp = 1;
+        }
+    }
 }
 
 /// Lowers the automatic step while frames take too long.

@@ -76,7 +76,7 @@ impl Ending {
             (EndingKind::OffTheSide, _) => format!("{title} from step {step}"),
             (EndingKind::FellBack, _) if *step == 0 => format!("{title} to the ground"),
             (EndingKind::FellBack, _) => format!("{title} to step {step}"),
-            (EndingKind::Stuck, _) => format!("stuck at riser {step}"),
+            (EndingKind::Stuck, _) => format!("stuck with its front at riser {step}"),
             (EndingKind::OutOfTime, _) if *step > 0 => format!("{title} on step {step}"),
             (_, Some(reason)) => format!("{title}: {}", reason.words()),
             _ => title.to_owned(),

@@ -237,7 +237,8 @@ fn readings(ui: &mut egui::Ui, lane: &Lane) {
         .map(|seen| format!("{} of {}", seen.steps_climbed, trial.stairs.steps));
     let more = match trial.fitness {
         Fitness::Climb if trial.stairs.steps > 0 => format!(
-            "; it stops counting at {:.2} m, where the whole snake is on the landing",
+            "; the first step is at {:.2} m, and at {:.2} m the whole snake is on the landing and nothing more counts",
+            trial.stairs.riser_y_m(0),
             arrived_y_m(&trial.stairs, &lane.body)
         ),
         _ => String::new(),
@@ -428,12 +429,12 @@ mod tests {
     }
 
     #[test]
-    fn the_fitness_says_where_it_stops_counting() {
+    fn the_fitness_says_where_the_stairs_begin_and_where_it_stops_counting() {
         let lane = climber_lane(0, "climber");
         let mut timeline = timeline(&lane, SPAN, 900.0);
         timeline.get_by_label("fitness").hover();
         timeline.run_steps(60);
-        assert!(shows(&timeline, "it stops counting at 26.00 m"));
+        assert!(shows(&timeline, "the first step is at 3.00 m, and at 26.00 m the whole snake is"));
     }
 
     #[test]

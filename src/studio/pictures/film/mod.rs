@@ -106,10 +106,10 @@ fn gif_within(
     shoot(order, &plan, |shooting| {
         let firsts = evenly(all.saturating_sub(1).max(1), PAIRS, PAIRS);
         let chosen: BTreeSet<usize> = firsts.flat_map(|first| [first, first + 1]).collect();
-        let mut samples = Vec::new();
+        let (mut samples, drawn) = (Vec::new(), (chosen.len() + all) as f64);
         shooting.play(chosen.into_iter().filter(|index| *index < all), |index, frame| {
             samples.push((index, frame));
-            Ok(progress.reach(0.0)?)
+            Ok(progress.reach(samples.len() as f64 / drawn)?)
         })?;
         let palette = GifPalette::of(&samples);
         let expected = palette.expected_bytes(&samples, all);
@@ -124,7 +124,7 @@ fn gif_within(
             if most.is_some_and(|most| file.bytes() > most) {
                 return Err(FilmError::TooLarge(file.bytes() * all as u64 / (index as u64 + 1)));
             }
-            Ok(progress.reach((index + 1) as f64 / all as f64)?)
+            Ok(progress.reach((samples.len() + index + 1) as f64 / drawn)?)
         })
     })?;
     Ok(file.map_or(Ok(()), GifFile::finish)?)

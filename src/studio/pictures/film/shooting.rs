@@ -254,4 +254,24 @@ mod tests {
         }
         assert_ne!(together[2].1, together[4].1, "the snake moves");
     }
+
+    #[test]
+    fn a_view_along_the_ground_takes_no_minutes_without_a_graphics_card() {
+        if lacks_a_driver() {
+            return;
+        }
+        let champions = vec![("climber".to_owned(), shipped_champion().expect("well formed"))];
+        let lanes = lanes_of(&FilmPart { title: None, champions }).expect("they fit");
+        let drawn = Offscreen::draw((895, 503), Theme::Light, |studio| {
+            studio.put_on_stage(lanes);
+            studio.settle();
+            let eye = Transform::from_xyz(18.400_47, 36.670_143, 0.920_652_57);
+            studio.place_camera(
+                eye.looking_at(Vec3::new(15.784_954, 26.886_23, 0.150_682_24), Vec3::Z),
+            );
+            let shot = studio.shoot();
+            studio.await_shot(shot)
+        });
+        assert!(drawn.is_ok(), "{drawn:?}");
+    }
 }

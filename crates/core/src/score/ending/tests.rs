@@ -100,16 +100,19 @@ fn a_snake_that_was_higher_fell_back() {
 fn a_snake_without_progress_at_a_riser_is_stuck_and_elsewhere_out_of_time() {
     // The front is 0.2 m before the fourth riser, at y = 9.
     let stuck = then(climb(7.8, 8.0), &[on(7.8, 12.0)]);
-    assert_eq!(watched(&stuck, NEVER).words(), "stuck at riser 4");
+    assert_eq!(watched(&stuck, NEVER).words(), "stuck with its front at riser 4");
     assert_eq!(watched(&stuck[..stuck.len() - 1], NEVER).words(), "out of time on step 3");
     // Rocking is no progress.
     let mut rocks = climb(7.8, 8.0);
     (0..9)
         .for_each(|count| rocks.push(on(7.8 - 0.4 * (count % 2) as f32, 8.5 + 0.5 * count as f32)));
-    assert_eq!(watched(&rocks, NEVER).words(), "stuck at riser 4");
+    assert_eq!(watched(&rocks, NEVER).words(), "stuck with its front at riser 4");
     assert_eq!(watched(&[on(-7.0, 0.0), on(-7.0, 15.0)], NEVER).words(), "out of time");
     assert_eq!(watched(&climb(1.8, 4.0), NEVER).words(), "out of time");
-    assert_eq!(watched(&then(climb(1.8, 4.0), &[on(1.8, 9.0)]), NEVER).words(), "stuck at riser 1");
+    assert_eq!(
+        watched(&then(climb(1.8, 4.0), &[on(1.8, 9.0)]), NEVER).words(),
+        "stuck with its front at riser 1"
+    );
 }
 
 #[test]
