@@ -97,7 +97,12 @@ impl StudioParams<'_, '_> {
         let Self { run, notices, history, opening, workspace, library, stage, .. } = self;
         match command {
             Command::Run(command) => {
-                let is_other = replaces_run(command, run);
+                // Whether another run replaces the current one.
+                let is_other = match command {
+                    RunCommand::Start => run.status() == RunStatus::Finished,
+                    RunCommand::New | RunCommand::Reset | RunCommand::Continue(_) => true,
+                    _ => false,
+                };
                 let change = if is_other { stage.settle() } else { None };
                 if let Some(change) = change.filter(|_| !matches!(command, RunCommand::Continue(_)))
                 {
@@ -114,7 +119,7 @@ impl StudioParams<'_, '_> {
             }
             Command::Stage(command) => {
                 if matches!(command, StageCommand::TakeTurn(_)) {
-                    workspace.end_black();
+                    workspace.is_black = false;
                 }
                 stage.apply(command, run, opening, notices)?;
             }
@@ -218,15 +223,6 @@ impl StudioParams<'_, '_> {
             }
         }
         Ok(())
-    }
-}
-
-/// Returns whether a command replaces the current run by another one.
-fn replaces_run(command: &RunCommand, run: &CurrentRun) -> bool {
-    match command {
-        RunCommand::Start => run.status() == RunStatus::Finished,
-        RunCommand::New | RunCommand::Reset | RunCommand::Continue(_) => true,
-        _ => false,
     }
 }
 

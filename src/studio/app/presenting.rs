@@ -71,7 +71,7 @@ fn sway(
         *swayed_s = 0.0;
         return;
     }
-    if playback.is_playing && rig.camera_mode() == CameraMode::Follow {
+    if playback.is_playing && rig.camera_mode == CameraMode::Follow {
         let from_s = *swayed_s;
         *swayed_s = (from_s + time.delta_secs()) % SWAY_S;
         rig.turn_by(sway_rad(*swayed_s) - sway_rad(from_s));
@@ -129,7 +129,7 @@ mod tests {
         let mut windows = app.world_mut().query::<&Window>();
         let mode = windows.single(app.world()).expect("one window").mode;
         let world = app.world();
-        (mode, world.resource::<CameraRig>().camera_mode(), world.resource::<Playback>().loops)
+        (mode, world.resource::<CameraRig>().camera_mode, world.resource::<Playback>().loops)
     }
 
     #[test]

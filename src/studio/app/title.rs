@@ -35,7 +35,7 @@ fn update(
                 }
                 ChampionSource::Lesson => "a lesson".to_owned(),
                 ChampionSource::Edited => "an edited body".to_owned(),
-                ChampionSource::Run(number) if number == run.number() => {
+                ChampionSource::Run(number) if number == run.number => {
                     format!("generation {generation}")
                 }
                 ChampionSource::Run(_) => format!("generation {generation} of an earlier run"),

@@ -191,12 +191,10 @@ fn heading(ui: &mut egui::Ui, text: &str) {
 
 /// Returns the next task of a reader who compares playbacks.
 fn next_play(plays: &Plays) -> &'static str {
-    match plays.finished.as_slice() {
-        [] => "Play it to its end. The result appears after two speeds.",
-        _ => {
-            "Now choose another speed (the field with × below the stage), and play it to its end again."
-        }
+    if plays.finished.is_empty() {
+        return "Play it to its end. The result appears after two speeds.";
     }
+    "Now choose another speed (the field with × below the stage), and play it to its end again."
 }
 
 /// Draws a table of the finished playbacks, with all digits of the results.

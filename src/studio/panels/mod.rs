@@ -208,9 +208,13 @@ fn draw(
     if is_first && !is_settled {
         // Nothing is drawn until the scale has taken effect, because the saved layout would otherwise be measured at the wrong scale.
     } else if is_presenting {
-        viewer.presented_stage(&mut root);
+        caption_band(&mut root, &PresentedCaption::of(&lanes, on_stage, &data.run));
+        viewer.reserve_stage(&mut root);
         if workspace.is_black() {
-            black_screen(&context);
+            // Black covers the whole window, so that the audience looks at the presenter.
+            let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::new("black screen"));
+            let whole = context.content_rect();
+            context.layer_painter(layer).rect_filled(whole, 0.0, egui::Color32::BLACK);
         }
     } else if workspace.is_bare {
         viewer.stage(&mut root);
@@ -280,12 +284,6 @@ fn draw(
     Ok(())
 }
 
-/// Covers the whole window in black, so that the audience looks at the presenter.
-fn black_screen(context: &egui::Context) {
-    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::new("black screen"));
-    context.layer_painter(layer).rect_filled(context.content_rect(), 0.0, egui::Color32::BLACK);
-}
-
 /// Returns the frame of the bars above and below the stage. `margin` is the space above and below their contents, in points.
 fn bar_frame(palette: &theme::Palette, margin: i8) -> egui::Frame {
     let margin = egui::Margin::symmetric(theme::GAP as i8 * 2, margin);
@@ -314,17 +312,10 @@ impl Viewer<'_, '_, '_> {
                 let is_of_lesson = lane.staged.source() == ChampionSource::Lesson;
                 let hides_future = is_of_lesson && self.data.lessons.hides_result();
                 let span = TimelineSpan::of(self.lanes.iter().copied(), hides_future);
-                let (playback, run) = (&self.data.on_stage.playback, self.data.run.number());
+                let (playback, run) = (&self.data.on_stage.playback, self.data.run.number);
                 self.panels.timeline.ui(ui, lane, playback, span, run);
             });
         }
-        self.reserve_stage(ui);
-    }
-
-    /// Draws the caption of the presenting mode at the bottom, and reserves the rest for the stage.
-    fn presented_stage(&mut self, ui: &mut egui::Ui) {
-        let caption = PresentedCaption::of(self.lanes, &self.data.on_stage, &self.data.run);
-        caption_band(ui, &caption);
         self.reserve_stage(ui);
     }
 
@@ -337,7 +328,7 @@ impl Viewer<'_, '_, '_> {
     }
 
     fn panel(&mut self, ui: &mut egui::Ui, kind: PanelKind) {
-        let shown = ShownLane::all(self.lanes, self.data.run.number());
+        let shown = ShownLane::all(self.lanes, self.data.run.number);
         let PanelData { run, opening, on_stage, .. } = self.data;
         let (lanes, focused, history) = (self.lanes, self.focused, &on_stage.history);
         let panels = &mut *self.panels;

@@ -48,7 +48,7 @@ impl OnStage<'_, '_> {
         match command {
             Command::Player(PlayerCommand::ToggleLoop) => Some(self.playback.loops),
             Command::View(ViewCommand::ToggleFollow) => {
-                Some(self.rig.camera_mode() != CameraMode::Free)
+                Some(self.rig.camera_mode != CameraMode::Free)
             }
             Command::View(ViewCommand::ToggleOverlay(overlay)) => {
                 Some(self.overlays.contains(overlay))

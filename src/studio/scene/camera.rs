@@ -250,7 +250,7 @@ fn glide(
         }
         points.extend(snakes.iter());
         let anchor = rig.anchor.unwrap_or_default();
-        goal = if rig.frames_all() {
+        goal = if rig.follows() && rig.lane.is_none() && rig.lanes > 1 {
             goal.framing(anchor, points, snakes, area.aspect(), covers)
         } else {
             goal.beside(anchor, snakes, area.aspect(), covers)

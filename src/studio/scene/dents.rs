@@ -112,7 +112,10 @@ fn sunken(pose: &Pose, size: Vec3, stairs: &Stairs) -> Option<Sunken> {
         let surface_z_m = stairs.surface_z_m(at.x, at.y);
         let depth_m = surface_z_m - at.z;
         let is_inside = (LEAST_DEPTH_M..MOST_DEPTH_M).contains(&depth_m);
-        let is_over_edge = surface_z_m > 0.0 && is_through_riser(stairs, at.y, depth_m);
+        let climbed = stairs.steps_climbed(f64::from(at.y));
+        // A point that is nearer to the riser than to the tread has entered through the riser.
+        let is_through_riser = climbed > 0 && at.y - stairs.riser_y_m(climbed - 1) < depth_m;
+        let is_over_edge = surface_z_m > 0.0 && is_through_riser;
         (is_inside && !is_over_edge).then(|| (at.with_z(surface_z_m), depth_m))
     });
     let (deepest, depth_m) = below.clone().reduce(|a, b| if b.1 > a.1 { b } else { a })?;
@@ -124,12 +127,6 @@ fn sunken(pose: &Pose, size: Vec3, stairs: &Stairs) -> Option<Sunken> {
     let middle = Mat2::from_angle(yaw_rad) * ((least + most) / 2.0);
     let centre = middle.extend(deepest.z);
     Some(Sunken { centre, yaw_rad, size_m: most - least, depth_m })
-}
-
-/// Returns whether a point below a tread has entered through the riser: it is nearer to the riser than to the tread.
-fn is_through_riser(stairs: &Stairs, y_m: f32, depth_m: f32) -> bool {
-    let climbed = stairs.steps_climbed(f64::from(y_m));
-    climbed > 0 && y_m - stairs.riser_y_m(climbed - 1) < depth_m
 }
 
 #[cfg(test)]

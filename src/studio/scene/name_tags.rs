@@ -79,7 +79,7 @@ fn draw(
     }
     let context = contexts.ctx_mut()?;
     let view = StageView::new(camera.0, camera.1, context);
-    let stage = area.rect();
+    let stage = area.rect;
     let layer = egui::LayerId::new(egui::Order::Background, egui::Id::new("name tags"));
     let painter = context.layer_painter(layer).with_clip_rect(stage);
     let palette = theme::of_context(context);

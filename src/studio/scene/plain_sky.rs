@@ -51,7 +51,7 @@ fn cover(
         let context = contexts.ctx_mut()?;
         let layer = egui::LayerId::new(egui::Order::Background, egui::Id::new("plain sky"));
         let sky = theme::flat(theme::of_context(context).horizon);
-        context.layer_painter(layer).rect_filled(area.rect(), 0.0, sky);
+        context.layer_painter(layer).rect_filled(area.rect, 0.0, sky);
     }
     *left = left_after(*left, compiling.0.load(Ordering::Relaxed));
     Ok(())

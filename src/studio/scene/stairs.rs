@@ -48,7 +48,10 @@ pub(super) fn solid(stairs: &Stairs) -> MeshBuilder {
         }
         corner += faces;
     }
-    let inner = inner_corners(&outline);
+    // The corners between a tread and the next riser, where the outline turns upward.
+    let points: Vec<Vec2> = outline.iter().map(|point| Vec2::from(*point)).collect();
+    let turns_up = |of: &&[Vec2]| (of[1] - of[0]).perp_dot(of[2] - of[1]) > 0.0;
+    let inner: Vec<Vec2> = points.windows(3).filter(turns_up).map(|of| of[1]).collect();
     solid.shade(
         |at| if inner.iter().any(|of| at.yz().distance(*of) < 1.0e-3) { CORNER } else { 1.0 },
     );
@@ -62,13 +65,6 @@ pub(super) fn solid(stairs: &Stairs) -> MeshBuilder {
         solid.sheet(bottom, Vec3::NEG_X * half_m, Vec3::Y * (to_m - from_m) / 2.0);
     }
     solid
-}
-
-/// Returns the points of an outline of y and z, in metres, where it turns upward: the corners between a tread and the next riser.
-fn inner_corners(outline: &[[f32; 2]]) -> Vec<Vec2> {
-    let points: Vec<Vec2> = outline.iter().map(|point| Vec2::from(*point)).collect();
-    let turns_up = |of: &&[Vec2]| (of[1] - of[0]).perp_dot(of[2] - of[1]) > 0.0;
-    points.windows(3).filter(turns_up).map(|of| of[1]).collect()
 }
 
 /// Returns the brightness factor of a step for red, green and blue.

@@ -25,7 +25,7 @@ impl ViewParams<'_> {
     /// Returns the look of the stage, for an exported film: camera mode, theme and overlays.
     pub fn look(&self) -> StageLook {
         StageLook {
-            camera: self.rig.camera_mode(),
+            camera: self.rig.camera_mode,
             theme: *self.theme,
             overlays: self.overlays.iter().copied().collect(),
         }
@@ -36,11 +36,11 @@ impl ViewParams<'_> {
         match command {
             ViewCommand::SetCamera(camera_mode) => self.rig.take(*camera_mode),
             ViewCommand::NextCameraMode => {
-                let next = self.rig.camera_mode().next();
+                let next = self.rig.camera_mode.next();
                 self.rig.take(next);
             }
             ViewCommand::ToggleFollow => {
-                let is_free = self.rig.camera_mode() == CameraMode::Free;
+                let is_free = self.rig.camera_mode == CameraMode::Free;
                 self.rig.take(if is_free { CameraMode::Follow } else { CameraMode::Free });
             }
             ViewCommand::ResetCamera => self.rig.take(CameraMode::Follow),

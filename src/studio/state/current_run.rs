@@ -54,9 +54,9 @@ pub(crate) struct CurrentRun {
     /// Evaluator, saves folder and presets, which all runs since the start of the program use.
     pub context: RunContext,
     /// Number of the run since the start of the program; the first is 0.
-    number: u32,
+    pub number: u32,
     /// Current run, with the plan with which it began.
-    source: RunSource,
+    pub(super) source: RunSource,
     /// Plan of the current run after all its changes.
     pub plan_now: RunPlan,
     plan_next: RunPlan,
@@ -142,16 +142,6 @@ impl CurrentRun {
         self.run_hash.map(|hash| format!("Run hash {hash:016x}"))
     }
 
-    /// Returns the number of the run since the start of the program; the first is 0.
-    pub fn number(&self) -> u32 {
-        self.number
-    }
-
-    /// Returns the folder in which the current run is saved.
-    pub fn folder(&self) -> &Path {
-        &self.source.folder
-    }
-
     /// Returns the settings of the current run after all its changes.
     pub fn settings(&self) -> &Settings {
         &self.plan_now.settings
@@ -160,11 +150,6 @@ impl CurrentRun {
     /// Returns the other runs of the saves folder, each with its readable name; `None` until the runs are listed.
     pub fn listed(&self) -> Option<impl Iterator<Item = &ListedRun>> {
         Some(self.others.runs.as_ref()?.iter().filter(|of| of.run.folder != self.source.folder))
-    }
-
-    /// Returns the runs of the saves folder that cannot be read.
-    pub fn unreadable_runs(&self) -> &[UnreadableRun] {
-        &self.others.unreadable
     }
 
     /// Returns the reports of the finished generations, the first generation first.

@@ -193,9 +193,9 @@ fn follow(
         // A lesson uses the stage.
         return;
     }
-    if following.run != run.number() {
+    if following.run != run.number {
         // The user has begun another run, which is followed from its first generation on.
-        (following.run, following.announced) = (run.number(), 0);
+        (following.run, following.announced) = (run.number, 0);
         following.follow_evolution();
         following.is_new = true;
         playback.restart();

@@ -35,7 +35,7 @@ fn open(
     *is_done = true;
     let latest = listed.filter(|of| of.run.finished > 0).max_by_key(|of| of.run.saved_at);
     let later = |of: &&UnreadableRun| latest.is_none_or(|latest| of.saved_at > latest.run.saved_at);
-    let damaged = run.unreadable_runs().iter().filter(later).max_by_key(|of| of.saved_at);
+    let damaged = run.others.unreadable.iter().filter(later).max_by_key(|of| of.saved_at);
     notices.problems(damaged.map(|of| format!("The latest run cannot be opened: {}", of.problem)));
     let latest = latest.map(|of| (of.run.clone(), offer(&of.run, &of.name)));
     if run.status() != RunStatus::Ready {
@@ -168,7 +168,7 @@ mod tests {
                 let is_told = said.starts_with("test 1, ") && said.contains(" is finished: ");
                 assert_eq!(is_told, status == RunStatus::Finished, "{said}");
                 let mut run = app.world_mut().resource_mut::<CurrentRun>();
-                let now = (run.plan_now.seed, run.number(), run.reports().len());
+                let now = (run.plan_now.seed, run.number, run.reports().len());
                 assert_eq!((now, run.status()), ((1, 0, 1), status));
                 assert!(!run.milestones.is_empty(), "its best snake can be shown");
                 run.apply(&command, &mut Notices::default()).expect("allowed");

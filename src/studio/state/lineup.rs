@@ -36,7 +36,7 @@ pub(crate) fn champion_of(
         Pick::Stairs(node) => run.stairs_agent(node),
         Pick::Individual(place) => run.individual(place),
     };
-    found.map(|champion| StagedChampion::from_run(&champion, run.number()))
+    found.map(|champion| StagedChampion::from_run(&champion, run.number))
 }
 
 /// Returns whether two lanes show the same individual.
@@ -98,7 +98,7 @@ pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, S
     if champions.len() < 2 {
         return Err("Nothing to race yet: finish two generations first.".to_owned());
     }
-    let number = run.number();
+    let number = run.number;
     let fitness: Vec<f32> = champions.iter().map(|champion| champion.evaluation.fitness).collect();
     let staged = |index| StagedChampion::from_run(champions[index], number);
     Ok(learning(&fitness).into_iter().map(staged).collect())
@@ -113,7 +113,7 @@ pub(crate) fn leaders(
     if leaders.len() < 2 {
         return Err("Nothing to race yet: finish a generation first.".to_owned());
     }
-    let number = run.number();
+    let number = run.number;
     let staged = |(rank, champion): (usize, &Champion)| {
         StagedChampion::from_run(champion, number).named(format!("No. {rank}"))
     };

@@ -11,7 +11,7 @@ use super::current_run::CurrentRun;
 use crate::studio::commands::MachinesCommand;
 use crate::studio::ui::notifications::Notices;
 use snakes_cluster::{BrokerOptions, Machines, ServerWatch, WatchNews, WatchedRun};
-use snakes_core::save::LONGEST_ADDRESS;
+use snakes_core::save::{LONGEST_ADDRESS, run_name};
 
 /// The connection with other computers, and its state.
 #[derive(Resource, Debug, Default)]
@@ -117,7 +117,7 @@ impl MachinesLink {
                 LinkState::Connected(known),
             ) => {
                 // Another run may have replaced the one for which the coordinator was requested.
-                if self.asked.as_ref() == Some(&(run.number(), asked)) {
+                if self.asked.as_ref() == Some(&(run.number, asked)) {
                     known.own_run = Some(name);
                     run.share(Some(evaluator));
                 }
@@ -136,9 +136,10 @@ impl MachinesLink {
         let (Some(watch), LinkState::Connected(known)) = (&self.watch, &mut self.state) else {
             return;
         };
-        let wanted = run
-            .to_share()
-            .map(|name| (run.number(), WatchedRun { name, local_threads: run.threads() }));
+        let wanted = run.is_under_way().then(|| {
+            let name = run_name(&run.source.plan);
+            (run.number, WatchedRun { name, local_threads: run.threads() })
+        });
         if wanted != self.asked {
             run.share(None);
             known.own_run = None;

@@ -64,7 +64,7 @@ impl Turns {
         run: &CurrentRun,
         on_stage: Option<&StagedChampion>,
     ) -> Option<StagedChampion> {
-        let number = run.number();
+        let number = run.number;
         let found = run.reports().iter().filter_map(|report| report.champion.as_ref());
         let of_run: Vec<_> =
             found.map(|champion| StagedChampion::from_run(champion, number)).collect();

@@ -100,10 +100,7 @@ pub(crate) fn small_icon_button(
     hint: &str,
 ) -> egui::Response {
     let palette = theme::of(ui);
-    let color = match ui.is_enabled() {
-        true => palette.text,
-        false => palette.text_weak.gamma_multiply(0.5),
-    };
+    let color = if ui.is_enabled() { palette.text } else { palette.text_weak.gamma_multiply(0.5) };
     let fills = [None, Some(palette.field_hovered)];
     let response = square_button(ui, icon, SMALL_SIDE, (0.55, Stroke::new(1.6, color)), fills);
     let response = named(response, WidgetType::Button, label);

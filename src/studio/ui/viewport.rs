@@ -9,7 +9,7 @@ use super::text_prompt;
 #[derive(Resource)]
 pub(crate) struct StageArea {
     /// Rectangle of the stage in the window, in egui points.
-    rect: egui::Rect,
+    pub rect: egui::Rect,
     /// Rectangles of the cards over the stage, in egui points.
     cards: Vec<egui::Rect>,
     /// Rectangle of the messages over the stage, in egui points; `None` without messages.
@@ -45,11 +45,6 @@ impl StageArea {
         (self.rect, self.cards, self.messages_room) = (rect, cards, messages_room);
         // Cloning a context only clones a handle.
         self.context = context.clone();
-    }
-
-    /// Returns the rectangle of the stage, in egui points.
-    pub fn rect(&self) -> egui::Rect {
-        self.rect
     }
 
     /// Returns the rectangle of the stage in the window, in logical pixels.

@@ -100,10 +100,8 @@ impl Layout {
     /// Returns to the default layout when the window has become much larger or smaller, unless the user has rearranged the panels.
     fn follow_height(&mut self, size: egui::Vec2) {
         let is_high = is_high(size);
-        let Some(before) = self.was_high.replace(is_high).filter(|before| *before != is_high)
-        else {
-            return;
-        };
+        let before = self.was_high.replace(is_high).filter(|before| *before != is_high);
+        let Some(before) = before else { return };
         // An offered tab is no arrangement of the user. It is offered again in the next frame.
         self.offer(PanelKind::Senses, false);
         if arrangement(&self.state) != arrangement(&Self::default_of(before, size.x)) {

@@ -36,7 +36,7 @@ pub(super) struct Workspace {
     /// Whether the stage is presented in full screen: without panels and cards, under a large caption.
     pub is_presenting: bool,
     /// Whether the screen is black in the presenting mode.
-    is_black: bool,
+    pub is_black: bool,
     /// Label of the setting to scroll to, until the settings panel has handled it.
     pub sought: Option<&'static str>,
     modal: Option<Modal>,
@@ -61,11 +61,6 @@ impl Workspace {
     /// Returns whether the presenting mode currently shows a black screen instead of the stage.
     pub fn is_black(&self) -> bool {
         self.is_presenting && self.is_black
-    }
-
-    /// Ends the black screen of the presenting mode, if it is on.
-    pub fn end_black(&mut self) {
-        self.is_black = false;
     }
 
     /// Executes a window command. Returns a message for the user if the command has no effect.

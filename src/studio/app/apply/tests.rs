@@ -168,7 +168,7 @@ fn quitting_asks_first_while_a_changed_body_would_be_lost() {
 fn a_lesson_leaves_the_own_run_untouched() {
     let mut app = app();
     let friction = friction_after(&mut app, &[]);
-    let number = |app: &App| app.world().resource::<CurrentRun>().number();
+    let number = |app: &App| app.world().resource::<CurrentRun>().number;
     friction_after(&mut app, &[set("0.5")]);
     let (own, run) = (plan(&app), number(&app));
     let [reset, start] = [RunCommand::Reset, RunCommand::Start].map(Command::Run);

@@ -48,19 +48,14 @@ impl ChartKind {
     /// Returns the text that is shown while there is no data.
     pub fn empty_text(self) -> String {
         let first = " after the first generation";
+        let logged = " after the first generation. Runs of earlier versions of the program have none in their logs";
         let (what, when) = match self {
             Self::Fitness => ("fitness of each generation", first),
             Self::Spread => {
                 ("distribution of the fitness", " when this session finishes a generation")
             }
-            Self::Endings => (
-                "ways in which the trials of each generation ended",
-                " after the first generation. Runs of earlier versions of the program have none in their logs",
-            ),
-            Self::Species => (
-                "species of each generation",
-                " after the first generation. Runs of earlier versions of the program have none in their logs",
-            ),
+            Self::Endings => ("ways in which the trials of each generation ended", logged),
+            Self::Species => ("species of each generation", logged),
             Self::Blocks => ("numbers of blocks of each generation", first),
             Self::Bodies => ("ancestry of the best body", first),
             Self::Stairs => ("stairs that evolve", first),

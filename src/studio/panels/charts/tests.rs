@@ -51,7 +51,7 @@ fn with(
 ) -> Vec<Command> {
     let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
     let best = run.reports().last().and_then(|report| report.champion.as_ref());
-    let selected = best.map(|best| StagedChampion::from_run(best, run.number()));
+    let selected = best.map(|best| StagedChampion::from_run(best, run.number));
     let mut harness = testing::panel([width, 700.0], |ui| {
         panel.ui(ui, run, &[], selected.as_ref());
     });

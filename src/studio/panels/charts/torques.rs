@@ -53,7 +53,7 @@ impl TorqueComparison {
         let of_selected = known.is_some_and(|(_, known)| known.as_ref() == selected);
         if !of_selected {
             let simulated = selected.filter(|staged| staged.recording().is_none());
-            self.child = simulated.map(|staged| Subject::staged(staged, run.number()));
+            self.child = simulated.map(|staged| Subject::staged(staged, run.number));
             self.parent = None;
             self.view = None;
         }
@@ -97,7 +97,7 @@ impl TorqueComparison {
 /// recorded as its own parent.
 fn parent(run: &CurrentRun, of: &StagedChampion) -> Option<(String, Arc<Genome>)> {
     let mut place = place_of(of.champion());
-    if of.source() != ChampionSource::Run(run.number()) {
+    if of.source() != ChampionSource::Run(run.number) {
         return None;
     }
     loop {

@@ -75,7 +75,7 @@ pub(crate) fn around_stage(
     let bar = bar.show(context, |ui| {
         let small = egui::Margin::symmetric(theme::GAP as i8 / 2, theme::GAP as i8 / 2);
         palette.card(palette.field_hovered).inner_margin(small).show(ui, |ui| {
-            let mode = on_stage.rig.camera_mode();
+            let mode = on_stage.rig.camera_mode;
             view_bar(ui, mode, is_narrow, situation.is_on, &on_stage.quality, states);
         });
     });

@@ -62,7 +62,7 @@ impl PresentedCaption {
                     .iter()
                     .find(|milestone| milestone.is_landed)
                     .is_some_and(|milestone| milestone.generation == generation)
-                    && first.staged.source() == ChampionSource::Run(run.number());
+                    && first.staged.source() == ChampionSource::Run(run.number);
                 Self::of_one(first, time_s, is_first_landing)
             }
             StageMode::Race => {

@@ -288,10 +288,10 @@ fn earlier_runs(ui: &mut egui::Ui, run: &CurrentRun) {
             return explain(ui, "Loading…");
         };
         let mut earlier = listed.filter(|of| of.run.finished > 0).peekable();
-        for UnreadableRun { problem, .. } in run.unreadable_runs() {
+        for UnreadableRun { problem, .. } in &run.others.unreadable {
             explain(ui, &format!("A run cannot be read: {problem}"));
         }
-        if earlier.peek().is_none() && run.unreadable_runs().is_empty() {
+        if earlier.peek().is_none() && run.others.unreadable.is_empty() {
             explain(ui, "There are no other runs.");
         }
         for ListedRun { run: summary, name, .. } in earlier {

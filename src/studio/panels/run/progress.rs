@@ -58,7 +58,10 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
             format!("{} snakes per second", rounded(per_s))
         }
         Some(per_s) => {
-            let time = duration_text(evaluations_left(run, done) as f64 / per_s);
+            let reports = run.reports().iter();
+            let made: u64 = reports.map(|report| u64::from(report.evaluations)).sum();
+            let left = run.plan_now.budget().saturating_sub(made + u64::from(done));
+            let time = duration_text(left as f64 / per_s);
             format!("{time} left, {} snakes per second", rounded(per_s))
         }
         None => "The time left appears after the first generation".to_owned(),
@@ -105,12 +108,6 @@ fn evaluations_per_s(reports: &[GenerationReport]) -> Option<f64> {
     let seconds: f64 = latest().map(|report| report.elapsed_s).sum();
     let evaluations: f64 = latest().map(|report| f64::from(report.evaluations)).sum();
     (seconds > 0.0 && evaluations > 0.0).then(|| evaluations / seconds)
-}
-
-/// Returns the evaluations left in the run's budget. `done` evaluations of the current generation are finished.
-fn evaluations_left(run: &CurrentRun, done: u32) -> u64 {
-    let made: u64 = run.reports().iter().map(|report| u64::from(report.evaluations)).sum();
-    run.plan_now.budget().saturating_sub(made + u64::from(done))
 }
 
 /// Describes the reasons for disqualification, the most frequent first.

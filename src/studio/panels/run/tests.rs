@@ -55,8 +55,7 @@ fn the_founder_of_the_next_run_can_be_removed() {
 
 #[test]
 fn a_new_run_is_disabled_while_a_value_is_invalid() {
-    let run = run();
-    let sent = sent(&run, |harness| {
+    let sent = sent(&run(), |harness| {
         type_into(harness, "Population", "a");
         assert!(shows(harness, "Population is \"a\"; allowed: 1 to"));
         click(harness, "New run");
@@ -66,8 +65,7 @@ fn a_new_run_is_disabled_while_a_value_is_invalid() {
 
 #[test]
 fn a_typed_seed_is_sent_before_the_command_of_a_button() {
-    let run = run();
-    let sent = sent(&run, |harness| {
+    let sent = sent(&run(), |harness| {
         type_into(harness, "Seed", "9");
         click(harness, "Start evolution");
     });

@@ -30,8 +30,7 @@ fn sent_at(
 
 #[test]
 fn the_ground_surface_starts_as_a_copy_of_the_stairs() {
-    let run = prepared_run();
-    let commands = sent(&run, |harness| {
+    let commands = sent(&prepared_run(), |harness| {
         harness.get_by_label("The ground has its own surface").click();
     });
     assert_eq!(commands, [set("ground.friction", "1")]);

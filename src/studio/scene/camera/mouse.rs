@@ -58,10 +58,8 @@ fn press(
     if presses == 0 {
         return;
     }
-    let Some(cursor) = window.cursor_position().filter(|cursor| area.has_pointer_at(*cursor))
-    else {
-        return;
-    };
+    let cursor = window.cursor_position().filter(|cursor| area.has_pointer_at(*cursor));
+    let Some(cursor) = cursor else { return };
     let Ok(ray) = camera.0.viewport_to_world(camera.1, cursor) else { return };
     let hits = worlds.iter_mut().filter_map(|mut world| world.cast_ray(ray));
     // Among ghosts at the same place, the last one is hit.

@@ -13,7 +13,7 @@ const TURNED_RAD: f32 = 0.05;
 /// State of the camera: mode, view, and what it follows.
 #[derive(Resource, Debug, Clone)]
 pub(crate) struct CameraRig {
-    pub(super) camera_mode: CameraMode,
+    pub camera_mode: CameraMode,
     /// Target view of the camera.
     pub(super) view: CameraView,
     /// Current view of the camera, which approaches the target view.
@@ -40,11 +40,6 @@ impl Default for CameraRig {
 }
 
 impl CameraRig {
-    /// Returns the current camera mode.
-    pub fn camera_mode(&self) -> CameraMode {
-        self.camera_mode
-    }
-
     /// Switches to a camera mode.
     pub fn take(&mut self, camera_mode: CameraMode) {
         self.camera_mode = camera_mode;
@@ -102,11 +97,6 @@ impl CameraRig {
         self.camera_mode != CameraMode::Free
     }
 
-    /// Returns whether the camera keeps several lanes in view.
-    pub(super) fn frames_all(&self) -> bool {
-        self.follows() && self.lane.is_none() && self.lanes > 1
-    }
-
     /// Returns the current transform of the camera.
     pub fn place(&self) -> Transform {
         self.shown.looking_at(self.anchor.unwrap_or_default() + self.shown.offset)
@@ -126,7 +116,7 @@ mod tests {
             rig.view.pitch_rad += pitch_rad;
             rig.view.distance_m /= 2.0;
             rig.turned_by_hand();
-            (rig.camera_mode(), rig.follows())
+            (rig.camera_mode, rig.follows())
         };
         assert_eq!(turned(CameraMode::Side, 0.0, 0.0), (CameraMode::Side, true), "only nearer");
         assert_eq!(turned(CameraMode::Side, 0.3, 0.0), (CameraMode::Follow, true));

@@ -230,7 +230,7 @@ mod tests {
                 Ok(())
             });
             let run = finished(&mut app);
-            assert_eq!((run.reports().len(), run.number()), (generations, 0));
+            assert_eq!((run.reports().len(), run.number), (generations, 0));
             assert_ne!(run.run_hash, hash);
             assert!(!run.next_run_differs(), "the next run has as many");
             assert!(run.milestones.is_sorted_by(|a, b| a.generation < b.generation));

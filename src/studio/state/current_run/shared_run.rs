@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::CurrentRun;
-use snakes_core::save::{ExistingRun, run_name};
+use snakes_core::save::ExistingRun;
 use snakes_lab::run::{Evaluator, RunSource};
 
 impl CurrentRun {
@@ -25,11 +25,6 @@ impl CurrentRun {
     /// Returns whether other computers take part in the evaluation of the generation in progress.
     pub fn is_shared_by_now(&self) -> bool {
         self.shared.as_ref().is_some_and(|(_, before)| self.reports.len() > *before)
-    }
-
-    /// Returns the name of the run in progress, if there is one that other computers could evaluate.
-    pub fn to_share(&self) -> Option<String> {
-        self.is_under_way().then(|| run_name(&self.source.plan))
     }
 
     /// Stops the run because its results cannot be trusted, and holds it before its first generation. The saved

@@ -30,13 +30,13 @@ impl CurrentRun {
         };
         if kept.len() < 2 {
             let champion = self.champion_of(number)?;
-            return Some(Show::solo(StagedChampion::from_run(champion, self.number())));
+            return Some(Show::solo(StagedChampion::from_run(champion, self.number)));
         }
         let staged = |member: &GenerationMember| {
             let place = IndividualId { generation: number, individual: member.individual };
             let (genome, trial) = ((*member.genome).clone(), self.trial_of(place));
             let champion = self.found(place, genome, trial, Some(member.evaluation))?;
-            Some(StagedChampion::from_run(&champion, self.number()))
+            Some(StagedChampion::from_run(&champion, self.number))
         };
         let champions = kept.iter().filter_map(staged).collect();
         Some(Show { champions, mode: StageMode::Generation { number, size } })

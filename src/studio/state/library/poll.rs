@@ -64,12 +64,12 @@ fn follow(
     mut seen: Local<(u32, usize)>,
     mut looked_s: Local<f32>,
 ) {
-    let current = run.is_under_way().then(|| run.folder());
+    let current = run.is_under_way().then_some(run.source.folder.as_path());
     if library.current.as_deref() != current {
         library.current = current.map(ToOwned::to_owned);
         library.revision += 1;
     }
-    let now = (run.number(), run.reports().len());
+    let now = (run.number, run.reports().len());
     let now_s = time.elapsed_secs();
     if *seen != now && library.is_open() && now_s - *looked_s > EARLIEST_LOOK_S {
         (*seen, *looked_s) = (now, now_s);

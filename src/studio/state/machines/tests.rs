@@ -39,14 +39,13 @@ fn a_connected_server_gets_the_run_in_progress_and_loses_it_on_disconnection() {
     link.take_in_news(WatchNews::Connected { proof: "p".to_owned() }, &mut run, &mut notices);
     link.follow(&mut run);
     let (number, asked) = link.asked.clone().expect("asked");
-    assert_eq!((number, asked.local_threads), (run.number(), 1));
+    assert_eq!((number, asked.local_threads), (run.number, 1));
     assert!(asked.name.starts_with("test-seed1-") && run.shared.is_none());
 
-    let evaluator = || Arc::new(LocalPool::new(2).expect("threads"));
     let coordinates = |run: &WatchedRun| WatchNews::Coordinates {
         run: run.clone(),
         name: "n".to_owned(),
-        evaluator: evaluator(),
+        evaluator: Arc::new(LocalPool::new(2).expect("threads")),
     };
     let other = WatchedRun { name: "other".to_owned(), local_threads: 1 };
     link.take_in_news(coordinates(&other), &mut run, &mut notices);

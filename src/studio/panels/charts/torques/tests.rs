@@ -72,7 +72,7 @@ fn the_torques_are_those_of_the_selected_snake_and_its_parent() {
     let child = IndividualId { generation: latest.number, individual };
     let staged = |place| {
         let champion: Champion = run.individual(place).expect("kept");
-        StagedChampion::from_run(&champion, run.number())
+        StagedChampion::from_run(&champion, run.number)
     };
     let mut torques = TorqueComparison::default();
     torques.update(&run, Some(&staged(child))).expect("a snake");

@@ -56,8 +56,11 @@ fn the_winner_has_a_flag_and_only_the_selected_snake_the_look_of_a_selection() {
     for (time_s, flags) in [(0.0, 0), (end_s, 1)] {
         let board = board(&lanes, StageMode::Race, time_s, false);
         assert_eq!(board.query_all_by_label(WINNER).count(), flags, "at {time_s} s");
-        let is_marked =
-            |clipped: &egui::epaint::ClippedShape| background_of(&clipped.shape).is_some();
+        // Whether a text has a background colour.
+        let is_marked = |clipped: &egui::epaint::ClippedShape| {
+            let egui::Shape::Text(text) = &clipped.shape else { return false };
+            text.galley.job.sections.iter().any(|section| section.format.background.a() > 0)
+        };
         assert!(!board.output().shapes.iter().any(is_marked), "at {time_s} s");
     }
 }
@@ -77,13 +80,6 @@ fn the_latest_result_of_a_race_stays_after_playback_went_back() {
     time_s.set(0.5);
     board.run();
     board.get_by_label_contains(&result);
-}
-
-/// Returns the background colour of a text, if it has one.
-fn background_of(shape: &egui::Shape) -> Option<egui::Color32> {
-    let egui::Shape::Text(text) = shape else { return None };
-    let sections = text.galley.job.sections.iter();
-    sections.map(|section| section.format.background).find(|color| color.a() > 0)
 }
 
 #[test]
