@@ -18,7 +18,7 @@ use crate::studio::state::new_file::offer_picture;
 use crate::studio::ui::notifications::Notices;
 use crate::studio::ui::theme::Theme;
 use crate::studio::ui::viewport::StageArea;
-use snakes_core::save::{Picture, store_picture};
+use snakes_core::save::{Picture, encoded_picture};
 
 /// A second camera, which renders the stage to an image for a screenshot.
 #[derive(Component)]
@@ -118,14 +118,16 @@ fn keep(captured: On<ScreenshotCaptured>, run: Res<CurrentRun>, mut notices: Res
     let Some(picture) = picture_of(&captured.image) else {
         return notices.problem("The renderer returned no picture.".to_owned());
     };
-    let file = run.context.saves.pictures().new_file("snakes-and-stairs", "png");
-    let kept = file.and_then(|path| store_picture(&path, &picture).map(|()| path));
-    match kept {
+    let add = |bytes: Vec<u8>| {
+        let folder = run.context.saves.pictures();
+        folder.add_file("snakes-and-stairs", "png", &bytes).map_err(|error| error.to_string())
+    };
+    match encoded_picture(&picture).map_err(|error| error.to_string()).and_then(add) {
         Ok(path) => {
             let text = format!("Picture saved to {}", path.display());
             offer_picture(&mut notices, text, &path);
         }
-        Err(error) => notices.problem(error.to_string()),
+        Err(problem) => notices.problem(problem),
     }
 }
 

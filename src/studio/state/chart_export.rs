@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::studio::commands::chart_export::{ChartExport, ChartFormat};
-use snakes_core::save::{SavesFolder, store_csv, store_picture};
+use snakes_core::save::{SavesFolder, encoded_csv, encoded_picture};
 use snakes_lab::plot;
 use snakes_lab::plot::Figure;
 
@@ -15,21 +15,16 @@ pub(crate) fn export(
     run: impl FnOnce() -> String,
 ) -> Result<PathBuf, String> {
     let ChartExport { figure, name, format, is_of_run } = export;
-    let new_file = |ending| saves.exports().new_file(name, ending);
-    match format {
+    let (ending, contents) = match format {
         ChartFormat::Png => {
             let titled = is_of_run.then(|| titled(figure, &run()));
             let picture = plot::figure(titled.as_ref().unwrap_or(figure));
-            let (picture, path) = (picture.map_err(|error| error.to_string())?, new_file("png")?);
-            store_picture(&path, &picture)?;
-            Ok(path)
+            ("png", encoded_picture(&picture.map_err(|error| error.to_string())?))
         }
-        ChartFormat::Csv => {
-            let path = new_file("csv")?;
-            store_csv(&path, &figure.table())?;
-            Ok(path)
-        }
-    }
+        ChartFormat::Csv => ("csv", encoded_csv(&figure.table())),
+    };
+    let contents = contents.map_err(|error| error.to_string())?;
+    Ok(saves.exports().add_file(name, ending, &contents)?)
 }
 
 /// Adds the name of the run to the figure's title, because in the window the name is outside the chart.

@@ -101,7 +101,9 @@ fn a3_a_gif_shows_only_the_climb_and_its_size_is_told_before_it_is_written() {
     let lines: Vec<Value> =
         said.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     let told = lines.iter().position(|line| line["type"] == "expected").expect("a size");
-    assert!(lines[..told].iter().all(|line| line["progress"] == 0.0), "{said}");
+    // Frames are sampled before the size is told, and many more are written afterwards.
+    let shares = |lines: &[Value]| lines.iter().filter(|line| line["progress"].is_f64()).count();
+    assert!(shares(&lines[told..]) > 2 * shares(&lines[..told]), "{said}");
     let expected = lines[told]["bytes"].as_f64().expect("bytes");
     let written = fs::metadata(folder.path().join("a.gif")).expect("written").len() as f64;
     assert!((0.6..1.6).contains(&(written / expected)), "{written} instead of {expected}");

@@ -1,6 +1,7 @@
 //! The folder of saves, and the runs in it.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -8,11 +9,12 @@ use directories::ProjectDirs;
 
 use super::change::load_changed_plan;
 use super::files::{modified, numbered, refuse_link};
+use super::library::{notes_beside, taken};
 use super::notes::{EntryNotes, notes_in_run};
 use super::plan::is_run;
 use super::record::{count_records, read_records};
 use super::run_name::run_name;
-use super::whole_file::prepare_folder;
+use super::whole_file::{prepare_folder, write_new};
 use super::{LoadedChampion, SaveError, load_champion};
 use crate::evolve::RunPlan;
 
@@ -57,20 +59,30 @@ impl SavesFolder {
         Self(self.0.join("exports"))
     }
 
-    /// Returns the first free path of the form `NAME-NUMBER.EXTENSION` in this folder.
-    pub fn free_name(&self, name: &str, extension: &str) -> PathBuf {
-        let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));
-        let mut free = (1..=u32::MAX).map(path).filter(|path| path.symlink_metadata().is_err());
-        free.next().unwrap_or_else(|| path(0))
-    }
-
-    /// Makes the folder if it is missing, and returns its first free path as [`Self::free_name`] does.
+    /// Adds a file under the first free name of the form `NAME-NUMBER.EXTENSION`, and makes the folder if it is missing. Returns the
+    /// path. Replaces no file, not even one that gets the name while this one is written.
     ///
     /// # Errors
-    /// The folder cannot be made.
-    pub fn new_file(&self, name: &str, extension: &str) -> Result<PathBuf, SaveError> {
+    /// The folder cannot be made, or the file cannot be written.
+    pub fn add_file(
+        &self,
+        name: &str,
+        extension: &str,
+        contents: &[u8],
+    ) -> Result<PathBuf, SaveError> {
         self.prepare()?;
-        Ok(self.free_name(name, extension))
+        let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));
+        let is_free = |path: &Path| path.symlink_metadata().is_err();
+        // Notes of a removed champion may remain. They must not become notes of a new one.
+        let has_no_notes = |path: &PathBuf| is_free(path) && is_free(&notes_beside(path));
+        for path in (1..=u32::MAX).map(path).filter(has_no_notes) {
+            match write_new(&path, contents) {
+                Err(SaveError::Unwritable { source, .. })
+                    if source.kind() == ErrorKind::AlreadyExists => {}
+                written => return written.map(|()| path),
+            }
+        }
+        Err(taken(&path(u32::MAX)))
     }
 
     /// Returns the path of the folder.
@@ -204,9 +216,10 @@ pub fn load_generation(folder: &Path, generation: u32) -> Result<LoadedChampion,
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn f5_a_damaged_run_is_listed_with_its_reason() {
-        use super::*;
         use crate::save::library::fixtures::{run_in, saves};
         let (_folder, saves) = saves();
         let [good, bad] = [1, 2].map(|seed| run_in(&saves, seed).path().expect("one").to_owned());
@@ -226,10 +239,29 @@ mod tests {
         }
     }
 
+    #[test]
+    fn files_that_are_added_at_the_same_time_neither_replace_each_other_nor_inherit_notes() {
+        use std::collections::BTreeSet;
+        let folder = tempfile::tempdir().expect("a folder");
+        let saves = SavesFolder::find(Some(folder.path()));
+        fs::write(folder.path().join("a-3.about"), "notes of a removed file").expect("written");
+        let add = |text: String| saves.add_file("a", "ron", text.as_bytes()).expect("written");
+        let mut paths: Vec<PathBuf> = std::thread::scope(|scope| {
+            let added: Vec<_> = (0..8).map(|n| scope.spawn(move || add(n.to_string()))).collect();
+            added.into_iter().map(|one| one.join().expect("added")).collect()
+        });
+        paths.sort();
+        assert_eq!(
+            paths,
+            [1, 2, 4, 5, 6, 7, 8, 9].map(|n| folder.path().join(format!("a-{n}.ron")))
+        );
+        let texts = paths.iter().map(|path| fs::read_to_string(path).expect("there"));
+        assert_eq!(texts.collect::<BTreeSet<_>>(), (0..8).map(|n| n.to_string()).collect());
+    }
+
     #[cfg(unix)]
     #[test]
     fn links_in_a_runs_folder_are_not_followed() {
-        use super::*;
         use std::os::unix::fs::symlink;
         let folder = tempfile::tempdir().expect("a folder");
         let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../../saves/first-climber.ron");

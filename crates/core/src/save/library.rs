@@ -23,6 +23,8 @@ pub use details::{
     ChampionDetails, EntryDetails, RunDetails, load_entry, read_entry, shipped_champions,
 };
 pub use list::{LibraryEntry, list};
+pub(super) use moving::taken;
+pub(super) use name::notes_beside;
 pub use name::{check_entry_name, plain_name};
 pub use notes::{read_notes, set_notes_text};
 pub use place::SavePlace;

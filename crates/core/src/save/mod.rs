@@ -49,7 +49,9 @@ pub use folder::{RunSummary, SavesFolder, load_generation, load_run, saved_at, w
 pub use lineage::{IndividualRecord, LineageRecord, MAX_SPREAD, parse_lineage};
 pub use notes::{EntryNotes, check_notes, check_run_name};
 pub use own_files::{KnownFiles, OwnFile, OwnKind};
-pub use picture::{Picture, load_picture, store_csv, store_picture, store_text};
+pub use picture::{
+    Picture, encoded_csv, encoded_picture, load_picture, store_csv, store_picture, store_text,
+};
 pub use plan::{is_run, load_plan, parse_plan};
 pub use poet_study::{ControlRun, HardStairs, PoetStudy, load_poet_study, store_poet_study};
 pub use preferences::{

@@ -34,11 +34,14 @@ impl Picture {
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn store_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
-    store_bytes(path, &encoded(picture).map_err(SaveError::unwritable(path))?)
+    store_bytes(path, &encoded_picture(picture).map_err(SaveError::unwritable(path))?)
 }
 
 /// Encodes a picture as a PNG file.
-pub(super) fn encoded(picture: &Picture) -> std::io::Result<Vec<u8>> {
+///
+/// # Errors
+/// Fails if the picture's size does not fit its pixels.
+pub fn encoded_picture(picture: &Picture) -> std::io::Result<Vec<u8>> {
     let encode = || -> Result<Vec<u8>, png::EncodingError> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, picture.width, picture.height);
@@ -86,6 +89,14 @@ fn store_bytes(path: &Path, bytes: &[u8]) -> Result<(), SaveError> {
 /// # Errors
 /// Fails if the file cannot be written.
 pub fn store_csv(path: &Path, records: &[Vec<String>]) -> Result<(), SaveError> {
+    store_bytes(path, &encoded_csv(records).map_err(SaveError::unwritable(path))?)
+}
+
+/// Encodes records as a CSV file (RFC 4180). No cell is a formula: see [`no_formula`].
+///
+/// # Errors
+/// Fails if the records have different lengths.
+pub fn encoded_csv(records: &[Vec<String>]) -> std::io::Result<Vec<u8>> {
     let encode = || -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         for record in records {
@@ -93,8 +104,7 @@ pub fn store_csv(path: &Path, records: &[Vec<String>]) -> Result<(), SaveError> 
         }
         writer.into_inner().map_err(|error| std::io::Error::other(error.to_string()).into())
     };
-    let bytes = encode().map_err(std::io::Error::other).map_err(SaveError::unwritable(path))?;
-    store_bytes(path, &bytes)
+    encode().map_err(std::io::Error::other)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::SaveError;
-use super::picture::{Picture, encoded};
+use super::picture::{Picture, encoded_picture};
 use super::replaced::{ANYONES_FOLDER, Replaced, folder_of};
 use super::whole_file::{remove_unfinished, temporary_of, without_temporary_name};
 
@@ -69,7 +69,7 @@ impl UnfinishedFolder {
     /// # Errors
     /// Fails if the file cannot be written.
     pub fn store_picture(&self, name: &str, picture: &Picture) -> Result<(), SaveError> {
-        let written = encoded(picture)
+        let written = encoded_picture(picture)
             .and_then(|bytes| fs::write(self.temporary.folder.path().join(name), bytes));
         written.map_err(SaveError::unwritable(&self.path.join(name)))
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::LESSONS;
-use snakes_core::save::{SavesFolder, store_text};
+use snakes_core::save::SavesFolder;
 use snakes_lab::export::worksheet_page;
 
 /// Writes the worksheet of a lesson to the folder of exports under a free name. Returns the path of the page.
@@ -12,10 +12,8 @@ use snakes_lab::export::worksheet_page;
 /// The file cannot be written.
 pub(crate) fn write_worksheet(saves: &SavesFolder, lesson: usize) -> Result<PathBuf, String> {
     let name = format!("worksheet-of-lesson-{}", lesson + 1);
-    let path = saves.exports().new_file(&name, "html")?;
     let text = LESSONS.get(lesson).map_or("", |lesson| lesson.worksheet);
-    store_text(&path, &worksheet_page(text))?;
-    Ok(path)
+    Ok(saves.exports().add_file(&name, "html", worksheet_page(text).as_bytes())?)
 }
 
 #[cfg(test)]

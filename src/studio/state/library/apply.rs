@@ -12,10 +12,10 @@ use crate::studio::stage::{MAX_LANES, Show};
 use crate::studio::state::shares::shared;
 use crate::studio::state::undo::UndoHistory;
 use crate::studio::ui::notifications::Notices;
+use snakes_core::save::champion_text;
 use snakes_core::save::library::{
     FileStep, SavePlace, delete, duplicate, export, import, plain_name, rename, set_notes_text,
 };
-use snakes_core::save::store_champion;
 use snakes_core::score::Recording;
 use snakes_lab::run::names::preset_title;
 use snakes_lab::run::{BackgroundTask, LibraryReader};
@@ -106,10 +106,9 @@ impl Library {
             let (label, champion) = champion();
             let (preset, seed) = (preset_title(&champion.origin.preset), champion.origin.seed);
             let name = plain_name(&format!("{preset} {seed}, {label}"));
-            let path = saves.new_file(&name, "ron")?;
             let recording = Recording::of(&champion.genome, &champion.trial);
-            store_champion(&path, &champion, Some(&recording))?;
-            Ok(FileStep::Added { path })
+            let text = champion_text(&champion, Some(&recording), &[])?;
+            Ok(FileStep::Added { path: saves.add_file(&name, "ron", text.as_bytes())? })
         })
     }
 
@@ -176,6 +175,29 @@ mod tests {
         let problem = tried.apply(&LibraryCommand::ShowLoaded).expect_err("gone");
         assert!(problem.contains("gone"), "{problem}");
         assert!(tried.apply(&LibraryCommand::ShowLoaded).expect("nothing").is_none());
+    }
+
+    #[test]
+    fn snakes_that_are_saved_at_the_same_time_are_all_kept() {
+        let mut tried = Tried::new(&[]);
+        let champion = shipped_champion().expect("well formed").champion;
+        let found = StagedChampion::from_run(&champion, 0);
+        let frictions = [0.25, 0.5, 0.75, 1.25];
+        for friction in frictions {
+            let mut trial = champion.trial.clone();
+            trial.surface.friction = friction;
+            let changed = found.in_world(&trial, format!("friction {friction}"));
+            tried.library.save(&changed).expect("begun");
+        }
+        tried.wait();
+        let names = tried.own();
+        let friction_of = |name: String| {
+            let path = tried.folder.path().join(name + ".ron");
+            load_champion(&path).expect("readable").champion.trial.surface.friction
+        };
+        let mut kept: Vec<f32> = names.into_iter().map(friction_of).collect();
+        kept.sort_by(f32::total_cmp);
+        assert_eq!(kept, frictions);
     }
 
     #[test]

@@ -9,7 +9,9 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, SystemTime};
 
-use snakes_core::save::{PreferencesFile, SavedProgress, load_champion, load_plan, load_preset};
+use snakes_core::save::{
+    PreferencesFile, SavedProgress, load_champion, load_plan, load_preset, parse_champion,
+};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::program::snakes;
@@ -23,7 +25,7 @@ const RESUMED_FOR: Duration = Duration::from_secs(4);
 #[derive(Debug)]
 pub struct Inventory {
     taken: SystemTime,
-    /// Hashes of the files outside runs, except notes, which may change.
+    /// Identities of the files outside runs, except notes, which may change: see [`identity`].
     files: BTreeMap<u64, PathBuf>,
     /// Folders of each run, by the hash of its plan. A run may have been copied.
     runs: BTreeMap<u64, Vec<RunContents>>,
@@ -63,7 +65,7 @@ impl Inventory {
                 // An empty file reserves a name while another one is moved there.
                 && !bytes.is_empty()
             {
-                self.files.insert(xxh3_64(&bytes), path);
+                self.files.insert(identity(&path, &bytes), path);
             }
         }
     }
@@ -174,6 +176,17 @@ pub fn assert_tidy(folder: &Path, preferences: &Path) {
         }
     }
     PreferencesFile::at(preferences).load().expect("readable").expect("written");
+}
+
+/// Returns a hash of what a file must keep: of a champion the champion itself, because an exam adds results to its file; of any other
+/// file all bytes.
+fn identity(path: &Path, bytes: &[u8]) -> u64 {
+    let is_champion = path.extension().is_some_and(|ending| ending == "ron");
+    let text = std::str::from_utf8(bytes).ok().filter(|_| is_champion);
+    match text.and_then(|text| parse_champion(path, text).ok()) {
+        Some(loaded) => xxh3_64(format!("{:?}", loaded.champion).as_bytes()),
+        None => xxh3_64(bytes),
+    }
 }
 
 fn entries(folder: &Path) -> Vec<PathBuf> {
