@@ -38,7 +38,7 @@ pub fn endings_table(rows: &[(String, &str, &Endings)]) -> String {
     });
     let used = tricks.iter().map(|trick| Trick::OPTIONS[*trick].choice().title.to_owned());
     let head = ["champion", "suite"].map(str::to_owned).into_iter().chain(titles).chain(used);
-    let row = |(name, suite, endings): &(String, &str, &Endings)| {
+    let row = |(name, suite, endings): &(String, &str, &Endings)| -> Vec<String> {
         let count = |way: &(EndingKind, Option<Disqualification>)| {
             let count = endings.counts.iter().find(|count| (count.kind, count.reason) == *way);
             count.map_or_else(|| "–".to_owned(), cell)
@@ -50,9 +50,8 @@ pub fn endings_table(rows: &[(String, &str, &Endings)]) -> String {
         let names = [name.clone(), (*suite).to_owned()];
         names.into_iter().chain(ways.iter().map(count)).chain(used).collect()
     };
-    let all: Vec<Vec<String>> =
-        std::iter::once(head.collect()).chain(rows.iter().map(row)).collect();
-    markdown_table(&all, 2)
+    let head: Vec<String> = head.collect();
+    markdown_table([head].into_iter().chain(rows.iter().map(row)), 2)
 }
 
 /// Formats the number of trials that ended in a way, with the median step if the way names one: "14 from 4".

@@ -295,8 +295,7 @@ fn table(suites: &[ExamSuite], champions: &[ExamRow]) -> String {
         }
         cells
     };
-    let rows: Vec<Vec<String>> = std::iter::once(head).chain(champions.iter().map(row)).collect();
-    markdown_table(&rows, 1)
+    markdown_table([head].into_iter().chain(champions.iter().map(row)), 1)
 }
 
 #[cfg(test)]

@@ -41,7 +41,7 @@ pub fn export(args: &Args, wanted: &ExportArgs) -> Result<(), CliError> {
         return with_progress(args, wanted, |progress| film.carry_out(progress));
     }
     let mut order = ExportOrder::new(ExportSource::read(&wanted.files)?, output.to_owned())?;
-    for champion in order.champions_mut() {
+    for champion in &mut order.source.champions {
         if !equals_record(&champion.file, &champion.loaded)? {
             champion.take_result_of_this_engine();
             let (name, result) = (&champion.name, champion.loaded.champion.reached());

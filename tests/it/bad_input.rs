@@ -7,7 +7,7 @@ use std::path::Path;
 use super::program::{folder, json_lines, run, snakes, with_slashes};
 
 /// Runs the program, which must fail with `code` and one line, and returns the line.
-fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
+pub fn refusal(folder: &Path, arguments: &str, code: i32) -> String {
     let output = run(folder, arguments);
     let message = String::from_utf8(output.stderr).expect("UTF-8");
     let message = message.trim_end().to_owned();

@@ -2,6 +2,8 @@
 //!
 //!     cargo test --release --test it bodies:: -- --ignored --nocapture
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use snakes_core::evolve::{Settings, with_fields};
 use snakes_core::genome::Genome;
@@ -28,6 +30,16 @@ fn random_bodies(settings: &Settings, count: u32) -> Vec<Genome> {
 
 fn evaluated(settings: &Settings, genomes: &[Genome]) -> Vec<Evaluation> {
     genomes.par_iter().map(|genome| evaluate(genome, &settings.trial)).collect()
+}
+
+/// Counts the bodies by the reasons of their disqualification, and prints the counts.
+fn counted<'r>(reasons: impl Iterator<Item = &'r str>) -> BTreeMap<&'r str, u32> {
+    let mut counts = BTreeMap::new();
+    reasons.for_each(|reason| *counts.entry(reason).or_default() += 1);
+    for (reason, count) in &counts {
+        println!("{count:>5}  {reason}");
+    }
+    counts
 }
 
 /// Returns Spearman's rank correlation. Equal values have equal ranks.
@@ -90,14 +102,9 @@ fn soft_bodies_stay_together() {
     let are_soft = |genome: &&Genome| !settings.trial.agent.body_plan(genome).springs.is_empty();
     let soft = genomes.iter().filter(are_soft).count();
     let ends = evaluated(&settings, &genomes);
-    let mut reasons = std::collections::BTreeMap::<&str, u32>::new();
-    for end in &ends {
-        *reasons.entry(end.disqualified.map_or("healthy", |of| of.words())).or_default() += 1;
-    }
     println!("{soft:>5}  of {} bodies have soft blocks", genomes.len());
-    for (reason, count) in &reasons {
-        println!("{count:>5}  {reason}");
-    }
+    let reason = |end: &Evaluation| end.disqualified.map_or("healthy", |of| of.words());
+    let reasons = counted(ends.iter().map(reason));
     let of = |reason: Disqualification| reasons.get(reason.words()).copied().unwrap_or(0);
     assert!(soft * 2 > genomes.len(), "only {soft} bodies have soft blocks");
     assert_eq!(of(Disqualification::NotFinite), 0);
@@ -126,13 +133,7 @@ fn no_body_creates_energy_without_being_disqualified() {
             (least_j, reason)
         })
         .collect();
-    let mut reasons = std::collections::BTreeMap::<&str, u32>::new();
-    for (_, reason) in &ends {
-        *reasons.entry(reason).or_default() += 1;
-    }
-    for (reason, count) in &reasons {
-        println!("{count:>5}  {reason}");
-    }
+    let reasons = counted(ends.iter().map(|(_, reason)| *reason));
     let least_j = ends.iter().map(|(least_j, _)| *least_j).fold(f32::INFINITY, f32::min);
     println!("least margin to 5 % and 1 J after a healthy step: {least_j:.3} J");
     assert!(least_j >= 0.0, "a healthy step created {} J too much", -least_j);

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::program::{folder, json_lines};
+use super::program::{CLIMBER, folder, json_lines};
 
 /// Returns the fields that `docs/data.md` lists for lines of this type of a command: all words in code of its rows.
 fn documented(command: &str, kind: &str) -> BTreeSet<String> {
@@ -47,21 +47,20 @@ fn add_fields(value: &Value, fields: &mut BTreeSet<String>) {
 #[test]
 fn r6_every_field_of_these_lines_of_json_is_documented() {
     let folder = folder();
-    let climber = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
     let tiny = "--population 4 --generations 2 --duration 0.5 --threads 1 --json";
     for (command, arguments) in [
         ("run", format!("run --preset neat {tiny} --out a")),
         ("run", format!("run --preset bodies --set evolution.strategy=body_ga {tiny} --out b")),
         ("run", format!("run --preset ladder {tiny} --out c")),
         ("run", format!("run --preset climb --set repeats.champion_trials=1 {tiny} --out d")),
-        ("replay --no-render", format!("replay {climber} --no-render --json")),
-        ("exam", format!("exam {climber} --suite step-rate --json")),
-        ("exam --trials", format!("exam {climber} --trials 2 --json")),
+        ("replay --no-render", format!("replay {CLIMBER} --no-render --json")),
+        ("exam", format!("exam {CLIMBER} --suite step-rate --json")),
+        ("exam --trials", format!("exam {CLIMBER} --trials 2 --json")),
         ("study` without a name", "study --json".to_owned()),
-        ("export", format!("export {climber} -o a.csv --json")),
+        ("export", format!("export {CLIMBER} -o a.csv --json")),
         ("show presets", "show presets --json".to_owned()),
         ("show settings", "show settings --json".to_owned()),
-        ("show body", format!("show body {climber} --json")),
+        ("show body", format!("show body {CLIMBER} --json")),
     ] {
         for line in json_lines(folder.path(), &arguments) {
             let kind = line["type"].as_str().expect("a type").to_owned();

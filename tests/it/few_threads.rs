@@ -6,7 +6,7 @@ use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use super::program::folder;
+use super::program::{CLIMBER, folder};
 
 /// Number of a user of whom no other process is, for tests that run as root: no limit binds root.
 const OTHER_USER: u32 = 61_234;
@@ -27,8 +27,7 @@ fn run_with_threads(folder: &Path, threads: u32, arguments: &str) -> Output {
 fn f8_without_threads_a_command_does_its_work_or_says_so_in_one_line() {
     let folder = folder();
     fs::set_permissions(folder.path(), Permissions::from_mode(0o777)).expect("opened to all");
-    let climber = Path::new(env!("CARGO_MANIFEST_DIR")).join("saves/climber.ron");
-    fs::copy(climber, folder.path().join("climber.ron")).expect("copied");
+    fs::copy(CLIMBER, folder.path().join("climber.ron")).expect("copied");
     // The other user may be refused the folder in which Cargo builds the program.
     fs::copy(env!("CARGO_BIN_EXE_snakes"), folder.path().join("snakes")).expect("copied");
     for threads in 1..=6 {

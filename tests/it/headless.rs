@@ -5,7 +5,9 @@ use snakes_core::evolve::StrategyKind;
 use snakes_core::save::load_preset;
 use snakes_core::world::{LANES, VectorLevel};
 
-use super::program::{folder, json_lines, run, snakes, stdout_of, with_slashes};
+use super::program::{
+    CLIMBER, cut_log, folder, json_lines, json_of, run, snakes, stdout_of, with_slashes,
+};
 
 const SMALL: &str =
     "--no-render --set newborns=0 --population 8 --generations 3 --duration 1 --seed 4";
@@ -33,28 +35,9 @@ fn json_lines_have_the_documented_fields() {
         let keys = line.as_object().expect("an object").keys().map(String::as_str);
         let mut keys: Vec<&str> = keys.collect();
         keys.sort_unstable();
-        assert_eq!(
-            keys,
-            [
-                "best",
-                "crashed",
-                "disqualified",
-                "elapsed_s",
-                "endings",
-                "evaluations",
-                "first_landing",
-                "generation",
-                "hash",
-                "mean",
-                "meaning",
-                "median",
-                "on_landing",
-                "simulations",
-                "std",
-                "type",
-                "worst"
-            ]
-        );
+        let documented = "best crashed disqualified elapsed_s endings evaluations first_landing generation hash mean \
+                          meaning median on_landing simulations std type worst";
+        assert_eq!(keys.join(" "), documented);
         // Two candidates for champion take nine trials each.
         assert_eq!((&line["evaluations"], &line["simulations"]), (&json!(8), &json!(26)));
     }
@@ -105,9 +88,6 @@ fn saves_go_to_the_working_directorys_saves_folder_or_else_to_the_data_folder() 
     assert!(here.starts_with("saves/"), "{here}");
 }
 
-/// Path of a champion that stands on the landing.
-const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
-
 #[test]
 fn a_run_from_a_champion_is_at_least_as_good_and_can_be_resumed() {
     let folder = folder();
@@ -117,19 +97,13 @@ fn a_run_from_a_champion_is_at_least_as_good_and_can_be_resumed() {
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{stderr}");
     assert!(stderr.contains("seed 1, from climber: generations 2"), "{stderr}");
-    let lines: Vec<serde_json::Value> = String::from_utf8_lossy(&output.stdout)
-        .lines()
-        .map(|line| serde_json::from_str(line).expect("JSON"))
-        .collect();
+    let lines = json_of(&output.stdout);
     let replay = json_lines(folder.path(), &format!("replay {CLIMBER} --no-render --json"));
     let reached = replay[0]["fitness"].as_f64().expect("a number");
     assert!(lines[0]["best"].as_f64().expect("a number") >= reached, "{lines:?}");
     let champion = with_slashes(lines[2]["champion"].as_str().expect("a path"));
     let its_folder = champion.rsplit_once('/').expect("a folder").0;
-    // The log is cut to the state after a kill that followed the first generation.
-    let log = folder.path().join(its_folder).join("log.jsonl");
-    let text = std::fs::read_to_string(&log).expect("read");
-    std::fs::write(&log, text.split_inclusive('\n').next().expect("a line")).expect("written");
+    cut_log(&folder.path().join(its_folder), 1);
     let resumed = json_lines(folder.path(), &format!("--no-render --json --resume {its_folder}"));
     assert_eq!(resumed[2]["run_hash"], lines[2]["run_hash"]);
     // A run without the champion as its founder is another run.
@@ -354,7 +328,6 @@ fn the_bench_takes_a_champion() {
 #[cfg(unix)]
 #[test]
 fn the_interrupt_key_ends_a_run_and_keeps_its_finished_generations() {
-    use super::program::snakes;
     use std::io::{BufRead, BufReader, Read};
     use std::process::Stdio;
 

@@ -9,7 +9,7 @@ use std::process::Output;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::program::{folder, run};
+use super::program::{cut_log, folder, run, run_in};
 
 const CHAMPION: &str = include_str!("../../saves/first-climber.ron");
 const PRESET: &str = include_str!("../../assets/presets/mud.ron");
@@ -477,11 +477,8 @@ fn good_run(folder: &Path, settings: &str) -> PathBuf {
     let arguments = "--no-render --population 4 --generations 3 --duration 0.2 --out good";
     let arguments = format!("{arguments} --preset report {settings}");
     assert!(run(folder, &arguments).status.success());
-    let good = fs::read_dir(folder.join("good")).expect("a folder").next().expect("a run");
-    let good = good.expect("a run").path();
-    let log = fs::read_to_string(good.join("log.jsonl")).expect("read");
-    let two: String = log.split_inclusive('\n').take(2).collect();
-    fs::write(good.join("log.jsonl"), two).expect("written");
+    let good = run_in(&folder.join("good")).expect("a run");
+    cut_log(&good, 2);
     good
 }
 
@@ -606,18 +603,9 @@ fn links_folders_and_pipes_in_place_of_files_are_refused() {
     let good = good_run(folder.path(), "");
     let secret = folder.path().join("secret");
     fs::write(&secret, "do not touch").expect("written");
-    let files = [
-        "run.ron",
-        "log.jsonl",
-        "checkpoint-2.ron",
-        "generation-1.ron",
-        "evaluations.jsonl",
-        "changes.jsonl",
-        "lock",
-        "lock-owner",
-    ];
+    let files = "run.ron log.jsonl checkpoint-2.ron generation-1.ron evaluations.jsonl changes.jsonl lock lock-owner";
     let mut number = 0;
-    for file in files {
+    for file in files.split(' ') {
         for kind in ["link", "link to itself", "link to a good one", "folder", "pipe"] {
             number += 1;
             let path = PathBuf::from(format!("run-{number}")).join(file);

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 #[cfg(unix)]
 use std::process::Command;
 use std::process::Stdio;
@@ -12,12 +12,12 @@ use std::time::Duration;
 
 use rand::RngExt;
 use serde_json::{Value, json};
-use snakes_core::evolve::{RunPlan, Settings};
+use snakes_core::evolve::RunPlan;
 use snakes_core::rng::{Purpose, stream};
-use snakes_core::save::{ExistingRun, SavesFolder};
+use snakes_core::save::{ExistingRun, SavesFolder, load_preset};
 use snakes_lab::run::{LocalPool, RecordedRun, RunControl, RunSource};
 
-use super::program::{folder, json_lines, run, snakes, with_slashes};
+use super::program::{cut_log, folder, json_lines, json_of, run, run_in, snakes, with_slashes};
 
 /// Flags of a run so short that it spends most of its time with writing.
 const TINY: &str = "--no-render --json --preset report --population 4 --generations 40 --duration 0.2 \
@@ -46,14 +46,6 @@ const WITH_QUEUES: &str = "--set criterion=0.05 --set snake_queue=4 --set snake_
 
 /// Number of runs that are killed: each of seventeen kinds of run six times.
 const ROUNDS: usize = 102;
-
-/// Returns the only run in a folder of saves; `None` if there is none yet.
-fn run_in(saves: &Path) -> Option<PathBuf> {
-    let mut runs = fs::read_dir(saves).ok()?.map(|entry| entry.expect("an entry").path());
-    let run = runs.next()?;
-    assert_eq!(runs.next(), None, "one run only");
-    Some(run)
-}
 
 /// Returns the number of complete lines in a run's log.
 fn finished(run: &Path) -> usize {
@@ -97,13 +89,7 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     let soft = ["soft cma_es", "soft body_ga"];
     let on_ladders = ["ladder cma_es"];
     let with_stairs = ["poet", "body_poet", "mcc"];
-    let strategies: Vec<&str> = strategies
-        .into_iter()
-        .chain(of_bodies)
-        .chain(soft)
-        .chain(on_ladders)
-        .chain(with_stairs)
-        .collect();
+    let strategies = [&strategies[..], &of_bodies, &soft, &on_ladders, &with_stairs].concat();
     let tiny = |strategy: &str| {
         if let Some(strategy) = strategy.strip_prefix("ladder ") {
             return format!("{TINY} --set strategy={strategy} {WITH_LADDER}");
@@ -184,6 +170,15 @@ fn a_run_killed_at_any_instant_resumes_and_ends_with_the_same_hash() {
     println!("killed on the way: {killed_on_the_way} of {ROUNDS}");
 }
 
+/// Returns the plan of a tiny run of the report's preset.
+fn tiny_plan(seed: u64, generations: u32) -> RunPlan {
+    let mut settings = load_preset("report").expect("shipped").settings;
+    settings.evolution.population = 4;
+    settings.evolution.generations = generations;
+    settings.trial.duration_s = 0.2;
+    RunPlan::new("report", seed, settings)
+}
+
 /// Changes during a tiny run: the first generation that uses the change, the setting, the value.
 const CHANGES: [(u32, &str, &str); 5] = [
     (2, "halving.parents", "2"),
@@ -214,12 +209,7 @@ fn evolve_changing(run: &mut RecordedRun, last: u32) {
 #[test]
 fn a_changed_run_killed_at_any_instant_repeats_its_changes() {
     let saves = folder();
-    let mut settings: Settings =
-        snakes_core::save::load_preset("report").expect("shipped").settings;
-    settings.evolution.population = 4;
-    settings.evolution.generations = 40;
-    settings.trial.duration_s = 0.2;
-    let plan = RunPlan::new("report", 1, settings);
+    let plan = tiny_plan(1, 40);
     let open = |name: &str| {
         let folder = SavesFolder::find(Some(&saves.path().join(name)));
         RunSource::in_saves(&folder, plan.clone(), ExistingRun::Keep)
@@ -256,11 +246,9 @@ fn a_changed_run_killed_at_any_instant_repeats_its_changes() {
         let second = stderr.lines().nth(1).unwrap_or_default();
         let told = "changed during the run: halving.parents 2 from generation 2, halving.mutation_range_nm 300";
         assert!(second.starts_with(told), "{stderr}");
-        let stdout = String::from_utf8_lossy(&output.stdout);
-        let last = stdout.lines().last().expect("lines");
-        let last: Value = serde_json::from_str(last).expect("JSON");
-        assert_eq!(last["run_hash"], expected, "round {round}");
-        assert_eq!(stdout.lines().count(), 45, "44 generations");
+        let lines = json_of(&output.stdout);
+        assert_eq!(lines.len(), 45, "44 generations");
+        assert_eq!(lines[44]["run_hash"], expected, "round {round}");
         let kept = fs::read(run_folder.join("changes.jsonl")).expect("read");
         assert_eq!(kept, changes, "no change is written twice");
     }
@@ -272,22 +260,15 @@ fn the_same_command_continues_a_stopped_run_and_restart_starts_over() {
     let whole = json_lines(saves.path(), &format!("{TINY} --out whole"));
     json_lines(saves.path(), &format!("{TINY} --out out"));
     let run_folder = run_in(&saves.path().join("out")).expect("a run");
-    // The log is cut to the state after a kill that followed the third generation.
-    let log = fs::read_to_string(run_folder.join("log.jsonl")).expect("read");
-    let three: String = log.split_inclusive('\n').take(3).collect();
-    let stop = || fs::write(run_folder.join("log.jsonl"), &three).expect("written");
-    stop();
     for (flag, goes_on) in [("", true), ("--restart", false)] {
+        cut_log(&run_folder, 3);
         let output = run(saves.path(), &format!("{TINY} --out out {flag}"));
         let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{stderr}");
         // The complete run has removed checkpoint 3, but kept checkpoint 2.
         assert_eq!(stderr.contains("continues after generation 2"), goes_on, "{stderr}");
-        let stdout = String::from_utf8_lossy(&output.stdout);
-        let last: Value =
-            serde_json::from_str(stdout.lines().last().expect("lines")).expect("JSON");
-        assert_eq!(last["run_hash"], whole[40]["run_hash"]);
-        stop();
+        let lines = json_of(&output.stdout);
+        assert_eq!(lines.last().expect("lines")["run_hash"], whole[40]["run_hash"]);
     }
 }
 
@@ -295,15 +276,9 @@ fn the_same_command_continues_a_stopped_run_and_restart_starts_over() {
 fn a_second_program_on_the_same_run_is_refused_with_the_owners_name() {
     let saves = folder();
     let arguments = "--no-render --preset report --population 4 --generations 2 --duration 0.2 --out out --seed 3";
-    let mut settings: Settings =
-        snakes_core::save::load_preset("report").expect("shipped").settings;
-    settings.evolution.population = 4;
-    settings.evolution.generations = 2;
-    settings.trial.duration_s = 0.2;
-    let plan = RunPlan::new("report", 3, settings);
     let out = SavesFolder::find(Some(&saves.path().join("out")));
-    let held =
-        RunSource::in_saves(&out, plan, ExistingRun::Keep).open("the studio").expect("opened");
+    let source = RunSource::in_saves(&out, tiny_plan(3, 2), ExistingRun::Keep);
+    let held = source.open("the studio").expect("opened");
     let output = run(saves.path(), arguments);
     assert_eq!(output.status.code(), Some(1));
     let message = with_slashes(&String::from_utf8_lossy(&output.stderr));

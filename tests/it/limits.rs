@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use super::program::{folder, json_lines, snakes};
+use super::program::{CLIMBER, folder, json_lines, snakes};
 
 /// Runs the program in a folder, with these limits of the shell.
 fn run_within(folder: &Path, limits: &str, arguments: &str) -> Output {
@@ -20,8 +20,6 @@ fn run_within(folder: &Path, limits: &str, arguments: &str) -> Output {
 fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
-
-const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
 
 #[test]
 fn s1_too_many_open_files_are_told_in_the_words_of_the_system() {

@@ -6,7 +6,7 @@ use std::process::Output;
 
 use serde_json::Value;
 
-use super::program::{folder, snakes};
+use super::program::{CLIMBER, folder, snakes};
 
 /// Stems of files that would clear the screen and change colours, end a cell, end a line, and turn the direction of writing.
 const NAMES: [&str; 4] =
@@ -44,9 +44,8 @@ fn cells(row: &str) -> usize {
 #[test]
 fn f9_names_of_files_act_neither_on_the_terminal_nor_on_lines_and_tables() {
     let folder = folder();
-    let climber = Path::new(env!("CARGO_MANIFEST_DIR")).join("saves/climber.ron");
     for name in NAMES.iter().chain(&["plain"]) {
-        fs::copy(&climber, folder.path().join(format!("{name}.ron"))).expect("copied");
+        fs::copy(CLIMBER, folder.path().join(format!("{name}.ron"))).expect("copied");
     }
     let acts = |c: char| c != '\n' && (c.is_control() || ('\u{202a}'..='\u{202e}').contains(&c));
     for command in COMMANDS {

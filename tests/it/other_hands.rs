@@ -6,30 +6,23 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use super::program::{folder, json_lines, run, stdout_of};
+use super::program::{CLIMBER, cut_log, folder, json_lines, run, run_in, stdout_of};
 
 /// Flags of a short run, which is complete after two generations.
 const TINY: &str = "--no-render --json --population 4 --generations 2 --duration 0.2 --threads 1";
-/// A champion of the program.
-const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
 
 /// Makes a short run within a folder, and returns its folder and the hash that it printed.
 fn tiny_run(folder: &Path) -> (PathBuf, String) {
     let lines = json_lines(folder, &format!("{TINY} --saves saves"));
     let hash = lines.last().expect("a line")["run_hash"].as_str().expect("a hash").to_owned();
-    let mut runs = fs::read_dir(folder.join("saves")).expect("a folder");
-    (runs.next().expect("a run").expect("a run").path(), hash)
+    (run_in(&folder.join("saves")).expect("a run"), hash)
 }
 
 #[test]
 fn f4_a_run_with_other_line_ends_and_byte_order_marks_is_continued_and_exported() {
     let folder = folder();
     let (run_folder, hash) = tiny_run(folder.path());
-    let log = run_folder.join("log.jsonl");
-    let lines = fs::read_to_string(&log).expect("read");
-    // The log is cut to the state after a kill that followed the first generation.
-    fs::write(&log, lines.lines().take(1).map(|line| format!("{line}\n")).collect::<String>())
-        .expect("written");
+    cut_log(&run_folder, 1);
     for file in fs::read_dir(&run_folder).expect("a folder") {
         let path = file.expect("a file").path();
         let text = fs::read_to_string(&path).expect("text");

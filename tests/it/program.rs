@@ -1,9 +1,13 @@
 //! Runs the program and reads its output.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use serde_json::Value;
+
+/// Path of a champion that climbs the stairs and stands on the landing.
+pub const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
 
 /// Returns a command that runs the program under test in `folder`.
 pub fn snakes(folder: &Path, arguments: &str) -> Command {
@@ -48,8 +52,29 @@ pub fn stdout_of(folder: &Path, arguments: &str) -> String {
 
 /// Runs the program, which must succeed, and returns the JSON objects on its standard output, one per line.
 pub fn json_lines(folder: &Path, arguments: &str) -> Vec<Value> {
-    let text = stdout_of(folder, arguments);
+    json_of(stdout_of(folder, arguments).as_bytes())
+}
+
+/// Returns the JSON objects on a program's standard output, one per line.
+pub fn json_of(stdout: &[u8]) -> Vec<Value> {
+    let text = std::str::from_utf8(stdout).expect("UTF-8");
     text.lines().map(|line| serde_json::from_str(line).expect("a JSON object")).collect()
+}
+
+/// Returns the only run in a folder of saves; `None` if there is none yet.
+pub fn run_in(saves: &Path) -> Option<PathBuf> {
+    let mut runs = fs::read_dir(saves).ok()?.map(|entry| entry.expect("an entry").path());
+    let run = runs.next()?;
+    assert_eq!(runs.next(), None, "one run only");
+    Some(run)
+}
+
+/// Cuts the log of a run to the state after a kill that followed this number of generations.
+pub fn cut_log(run: &Path, generations: usize) {
+    let log = run.join("log.jsonl");
+    let text = fs::read_to_string(&log).expect("a log");
+    let first: String = text.split_inclusive('\n').take(generations).collect();
+    fs::write(log, first).expect("written");
 }
 
 /// Returns a text with the slashes of Windows paths turned forward.

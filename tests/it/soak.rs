@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::program::{folder, snakes};
+use super::program::{folder, run_in, snakes};
 
 const SAMPLING_INTERVAL: Duration = Duration::from_secs(5);
 /// Time after which threads, caches and the allocator have grown to their final size.
@@ -77,8 +77,7 @@ fn memory_stays_flat_and_logs_small() {
     Command::new("kill").args(["-INT", &pid]).status().expect("kill");
     child.wait().expect("ended");
     reader.join().expect("read");
-    let runs = fs::read_dir(saves.path().join("out")).expect("saves");
-    let run = runs.map(|run| run.expect("a run").path()).next().expect("a run");
+    let run = run_in(&saves.path().join("out")).expect("a run");
     let (_, log_bytes) = count_and_bytes(&run, "log.jsonl");
     let (checkpoints, checkpoint_bytes) = count_and_bytes(&run, "checkpoint-");
     let (champions, champion_bytes) = count_and_bytes(&run, "generation-");

@@ -19,7 +19,7 @@ mod screenshots;
 mod settings;
 mod stage;
 
-use super::program::{folder, json_lines, run, stdout_of};
+use super::program::{cut_log, folder, json_lines, run, stdout_of};
 pub use display::Studio;
 use picture::{Picture, difference, is_blue, is_red};
 use places::Area;
@@ -152,7 +152,7 @@ fn r_plays_from_the_start_and_f_stops_following() {
     studio.picture_with(|picture| difference(&held, picture) > 1000);
     // Without following, the stairs do not move on the screen. The sky and the far ground at the top of the stage show this.
     let far = |picture: &Picture| {
-        let scene = picture.scene();
+        let scene = picture.scene;
         picture.region(Area { bottom: scene.top + 30, ..scene })
     };
     let before = far(&studio.picture());
@@ -204,11 +204,9 @@ fn a_killed_studio_continues_its_run_and_so_does_headless_mode() {
     studio.wait_for_generations(2);
     // Dropping the studio kills the program.
     drop(studio);
-    let log = std::fs::read_dir(&saves).expect("saves").next().expect("a run").expect("a run");
-    let text = std::fs::read_to_string(log.path().join("log.jsonl")).expect("a log");
-    let two: String = text.split_inclusive('\n').take(2).collect();
-    std::fs::write(log.path().join("log.jsonl"), two).expect("written");
-    let resume = format!("--resume {}", log.path().display());
+    let evolved = std::fs::read_dir(&saves).expect("saves").next().expect("a run").expect("a run");
+    let resume = format!("--resume {}", evolved.path().display());
+    cut_log(&evolved.path(), 2);
     let Some(studio) = Studio::open("resumed", &resume) else { return };
     studio.wait_for_title("4 of 4 generations, finished");
     drop(studio);

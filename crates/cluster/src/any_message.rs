@@ -40,11 +40,11 @@ pub fn kinds_of_message(bytes: &[u8]) -> Result<Vec<&'static str>, WireError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::{TaskText, WIRE_FORMAT, line_of, shared_hash, task_key};
+    use crate::hello::tests::run_notice;
+    use crate::wire::{TaskText, line_of, shared_hash, task_key};
     use snakes_core::rng::{Purpose, stream};
     use snakes_core::save::load_preset;
     use snakes_core::score::ExamSuite;
-    use snakes_core::{ENGINE_VERSION, Processors};
     use snakes_lab::run::evaluate_caught;
 
     /// Returns messages of every kind, each with the name of its kind.
@@ -75,18 +75,9 @@ mod tests {
             let condition = ExamSuite::Shove.conditions(&settings.trial).remove(0);
             examples.push((format!("condition-{preset}"), line_of(&condition).into_bytes()));
         }
-        let run = RunNotice {
-            format: WIRE_FORMAT,
-            run: "climb-seed1".to_owned(),
-            host: "computer".to_owned(),
-            engine: ENGINE_VERSION,
-            processors: Processors::THIS,
-            proof: "0123456789abcdef".to_owned(),
-            pending: 3,
-            results: 4,
-            set_aside: vec!["w-1".to_owned()],
-            trouble: None,
-        };
+        let set_aside = vec!["w-1".to_owned()];
+        let notice = run_notice("climb-seed1", "computer");
+        let run = RunNotice { pending: 3, results: 4, set_aside, ..notice };
         examples.push(("run".to_owned(), line_of(&run).into_bytes()));
         examples
     }

@@ -25,12 +25,14 @@ use snakes_lab::run::with_threads;
 #[derive(Debug)]
 pub struct Broker {
     options: BrokerOptions,
-    connection: Arc<ServerConnection>,
-    runtime: Handle,
+    /// The state of the connection.
+    pub(super) connection: Arc<ServerConnection>,
+    /// The handle of the connection's runtime.
+    pub(super) runtime: Handle,
     /// The runtime of the connection. It is `None` only while the broker is dropped.
     owned_runtime: Option<Runtime>,
-    client: Client,
-    jetstream: Context,
+    pub(super) client: Client,
+    pub(super) jetstream: Context,
 }
 
 /// Which messages a consumer fetches.
@@ -111,24 +113,6 @@ impl Broker {
     /// Returns the flags that name this server on a command line.
     pub(super) fn flags(&self) -> String {
         self.options.flags()
-    }
-
-    /// Returns the state of the connection.
-    pub(super) fn connection(&self) -> &ServerConnection {
-        &self.connection
-    }
-
-    /// Returns the handle of the connection's runtime.
-    pub(super) fn runtime(&self) -> &Handle {
-        &self.runtime
-    }
-
-    pub(super) fn client(&self) -> &Client {
-        &self.client
-    }
-
-    pub(super) fn jetstream(&self) -> &Context {
-        &self.jetstream
     }
 
     /// Returns the largest payload of a message that the server accepts, in bytes.

@@ -41,7 +41,7 @@ const ANSWER_MARGIN: Duration = Duration::from_secs(2);
 impl Puller {
     /// Creates a puller that fetches from `source`, up to `most` messages per request. The consumer must exist.
     pub fn new(broker: &Arc<Broker>, source: PullSource, most: usize) -> Self {
-        let renewals = broker.connection().renewals();
+        let renewals = broker.connection.renewals();
         Self { broker: Arc::clone(broker), source, most, renewals, consumer: None, request: None }
     }
 

@@ -50,18 +50,18 @@ pub async fn publish_until_stored(
     bytes: &[u8],
     make_room: impl AsyncFn() -> bool,
 ) {
-    let mut renewals = broker.connection().renewals();
+    let mut renewals = broker.connection.renewals();
     loop {
         let message = PublishMessage::build().payload(bytes.to_vec().into()).message_id(id);
         let publish =
-            async { broker.jetstream().send_publish(subject.to_owned(), message).await?.await };
+            async { broker.jetstream.send_publish(subject.to_owned(), message).await?.await };
         let stored = tokio::select! {
             stored = publish => stored,
             // An answer through the lost connection may never come.
             _ = renewals.changed() => continue,
         };
         let Err(error) = stored else {
-            broker.connection().succeeded(task);
+            broker.connection.succeeded(task);
             return;
         };
         let trouble = match error.kind() {
@@ -74,7 +74,7 @@ pub async fn publish_until_stored(
         if matches!(trouble, Trouble::Full(_)) && make_room().await {
             continue;
         }
-        broker.connection().failed(task, &trouble);
+        broker.connection.failed(task, &trouble);
         tokio::time::sleep(RETRY_PAUSE).await;
     }
 }

@@ -22,8 +22,7 @@ use super::puller::{Pulled, Puller};
 use super::store::{RETRY_PAUSE, publish_until_stored};
 use super::wire::{ResultBatch, TaskText, WorkBatch};
 use activity::WorkerActivity;
-use notices::answer_audits;
-use notices::tell_and_listen;
+use notices::{answer_audits, tell_and_listen};
 use shared_cache::SharedCache;
 use snakes_lab::run::RunControl;
 use snakes_lab::run::headless::say;
@@ -85,9 +84,9 @@ pub fn work(
         redelivered: AtomicU64::new(0),
         activity: WorkerActivity::default(),
     });
-    let runtime = place.broker.runtime();
+    let runtime = &place.broker.runtime;
     let source = PullSource::Work(place.options.proof.clone());
-    let consumer = place.broker.connection().answer(place.broker.consumer(&source));
+    let consumer = place.broker.connection.answer(place.broker.consumer(&source));
     let Some(consumer) = place.unless_stopped(Duration::ZERO, consumer) else { return Ok(0) };
     consumer.map_err(|trouble| place.broker.refused("asking for work", trouble))?;
     let notices = runtime.spawn(tell_and_listen(Arc::clone(&place)));
@@ -103,7 +102,7 @@ pub fn work(
     // The task of the notices ends after its last notice, which says that this worker leaves.
     let error = runtime.block_on(async {
         let error = tokio::time::timeout(LAST_WORDS, notices).await;
-        let _ = tokio::time::timeout(LAST_WORDS, place.broker.client().flush()).await;
+        let _ = tokio::time::timeout(LAST_WORDS, place.broker.client.flush()).await;
         error
     });
     match error {
@@ -137,7 +136,7 @@ impl Workplace {
     /// Returns the output of a future, or `None` if the worker was stopped and the future does not end within `grace`
     /// after that.
     fn unless_stopped<T>(&self, grace: Duration, future: impl Future<Output = T>) -> Option<T> {
-        self.broker.runtime().block_on(async {
+        self.broker.runtime.block_on(async {
             tokio::select! {
                 biased;
                 value = future => Some(value),
@@ -158,7 +157,7 @@ async fn stopped(control: &RunControl, grace: Duration) {
 /// Runs one thread of a worker: fetches and computes batches until the worker is stopped.
 fn work_loop(place: &Workplace) {
     const TASK: &str = "no work can be fetched";
-    let connection = place.broker.connection();
+    let connection = &place.broker.connection;
     let source = PullSource::Work(place.options.proof.clone());
     let mut puller = Puller::new(&place.broker, source, 1);
     while !place.control.is_cancelled() {
@@ -194,7 +193,7 @@ fn do_batch(place: &Workplace, message: &Message) {
     }
     let reporter = {
         let message = message.clone();
-        place.broker.runtime().spawn(async move {
+        place.broker.runtime.spawn(async move {
             loop {
                 tokio::time::sleep(PROGRESS_INTERVAL).await;
                 // A lost report is harmless: the next one follows.

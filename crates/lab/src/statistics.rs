@@ -142,54 +142,42 @@ pub fn holm(probabilities: &[f64]) -> Vec<f64> {
     corrected
 }
 
-/// Effect size A of Vargha and Delaney (Journal of Educational and Behavioral Statistics 25 (2000)): the probability that a value
-/// of one group is greater than a value of another.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Superiority {
-    /// Share of all pairs in which the first value is greater. Equal values count half.
-    pub seen: f64,
-    /// Lower end of the 95 % interval.
-    pub least: f64,
-    /// Upper end of the 95 % interval.
-    pub most: f64,
-}
-
-impl Superiority {
-    /// Compares all values with all others. The interval is that of method 5 of Newcombe (Confidence intervals for an effect size
-    /// measure based on the Mann-Whitney statistic, part 2, Statistics in Medicine 25 (2006)). Returns `None` if a group is empty.
-    pub fn of(values: &[f64], others: &[f64]) -> Option<Self> {
-        let pairs =
-            values.iter().flat_map(|value| others.iter().map(move |other| value.total_cmp(other)));
-        let points = pairs.map(|order| match order {
-            Ordering::Greater => 1.0,
-            Ordering::Equal => 0.5,
-            Ordering::Less => 0.0,
-        });
-        let (count, other_count) = (values.len() as f64, others.len() as f64);
-        let all = count * other_count;
-        if all == 0.0 {
-            return None;
-        }
-        let seen = points.sum::<f64>() / all;
-        let half = f64::midpoint(count, other_count) - 1.0;
-        let deviation = |share: f64| {
-            let spread = 1.0 + half * (1.0 - share) / (2.0 - share) + half * share / (1.0 + share);
-            (share * (1.0 - share) * spread / all).sqrt()
-        };
-        // Each end is a probability at which the observed share is just at the edge of the 95 % of the most likely samples.
-        let end = |mut inside: f64, mut outside: f64| {
-            for _ in 0..60 {
-                let middle = f64::midpoint(inside, outside);
-                if (seen - middle).abs() <= Z * deviation(middle) {
-                    inside = middle
-                } else {
-                    outside = middle
-                }
-            }
-            inside
-        };
-        Some(Self { seen, least: end(seen, 0.0), most: end(seen, 1.0) })
+/// Returns the effect size A of Vargha and Delaney (Journal of Educational and Behavioral Statistics 25 (2000)): the probability that
+/// a value of one group is greater than a value of another, as a share of all pairs, in which equal values count half. The interval is
+/// that of method 5 of Newcombe (Confidence intervals for an effect size measure based on the Mann-Whitney statistic, part 2,
+/// Statistics in Medicine 25 (2006)). Returns `None` if a group is empty.
+pub fn superiority(values: &[f64], others: &[f64]) -> Option<Share> {
+    let pairs =
+        values.iter().flat_map(|value| others.iter().map(move |other| value.total_cmp(other)));
+    let points = pairs.map(|order| match order {
+        Ordering::Greater => 1.0,
+        Ordering::Equal => 0.5,
+        Ordering::Less => 0.0,
+    });
+    let (count, other_count) = (values.len() as f64, others.len() as f64);
+    let all = count * other_count;
+    if all == 0.0 {
+        return None;
     }
+    let seen = points.sum::<f64>() / all;
+    let half = f64::midpoint(count, other_count) - 1.0;
+    let deviation = |share: f64| {
+        let spread = 1.0 + half * (1.0 - share) / (2.0 - share) + half * share / (1.0 + share);
+        (share * (1.0 - share) * spread / all).sqrt()
+    };
+    // Each end is a probability at which the observed share is just at the edge of the 95 % of the most likely samples.
+    let end = |mut inside: f64, mut outside: f64| {
+        for _ in 0..60 {
+            let middle = f64::midpoint(inside, outside);
+            if (seen - middle).abs() <= Z * deviation(middle) {
+                inside = middle
+            } else {
+                outside = middle
+            }
+        }
+        inside
+    };
+    Some(Share { seen, least: end(seen, 0.0), most: end(seen, 1.0) })
 }
 
 #[cfg(test)]
@@ -283,7 +271,7 @@ mod tests {
 
     #[test]
     fn superiority_is_the_share_of_pairs_and_its_interval_holds_it() {
-        let of = |values: &[f64], others: &[f64]| Superiority::of(values, others).expect("values");
+        let of = |values: &[f64], others: &[f64]| superiority(values, others).expect("values");
         let found = of(&[1.0, 2.0, 3.0], &[2.0, 0.0]);
         assert!((found.seen - 4.5 / 6.0).abs() < 1e-12, "{found:?}");
         assert!(found.least < found.seen && found.seen < found.most, "{found:?}");
@@ -295,6 +283,6 @@ mod tests {
         assert!(((1.0 - a) * (1.0 - a) - z * z * v).abs() < 1e-9, "{apart:?}");
         let (one, other) = (of(&[1.0, 4.0], &[2.0, 3.0, 9.0]), of(&[2.0, 3.0, 9.0], &[1.0, 4.0]));
         assert!((one.least - (1.0 - other.most)).abs() < 1e-9, "{one:?} {other:?}");
-        assert_eq!(Superiority::of(&[], &[1.0]), None);
+        assert_eq!(superiority(&[], &[1.0]), None);
     }
 }

@@ -21,10 +21,7 @@ const RUN: &str = if cfg!(debug_assertions) {
 /// Returns the hash of the run on this machine alone.
 fn local_hash() -> &'static str {
     static HASH: OnceLock<String> = OnceLock::new();
-    HASH.get_or_init(|| {
-        let folder = folder();
-        run_hash(&json_lines(folder.path(), &format!("{RUN} --json")))
-    })
+    HASH.get_or_init(|| run_hash(&json_lines(folder().path(), &format!("{RUN} --json"))))
 }
 
 /// Returns how many times each fault is tried.
@@ -68,9 +65,11 @@ fn with_fault(name: &str, mut fault: impl FnMut(&mut Room, &mut ChaCha8Rng)) {
     }
 }
 
-/// Returns how long the network is cut: a minute if faults are repeated.
-fn cut() -> Duration {
-    Duration::from_secs(if rounds() > 1 { 60 } else { 12 })
+/// Cuts connections for a while: a minute if faults are repeated.
+fn cut(connections: &[&Proxy]) {
+    connections.iter().for_each(|proxy| proxy.cut(true));
+    sleep(Duration::from_secs(if rounds() > 1 { 60 } else { 12 }));
+    connections.iter().for_each(|proxy| proxy.cut(false));
 }
 
 #[test]
@@ -133,31 +132,17 @@ fn the_server_loses_its_store() {
 
 #[test]
 fn the_network_between_a_worker_and_the_server_is_cut() {
-    with_fault("worker cut off", |room, _| {
-        room.worker_proxy.cut(true);
-        sleep(cut());
-        room.worker_proxy.cut(false);
-    });
+    with_fault("worker cut off", |room, _| cut(&[&room.worker_proxy]));
 }
 
 #[test]
 fn the_network_between_the_coordinator_and_the_server_is_cut() {
-    with_fault("coordinator cut off", |room, _| {
-        room.coordinator_proxy.cut(true);
-        sleep(cut());
-        room.coordinator_proxy.cut(false);
-    });
+    with_fault("coordinator cut off", |room, _| cut(&[&room.coordinator_proxy]));
 }
 
 #[test]
 fn the_network_is_cut_around_the_server() {
-    with_fault("server cut off", |room, _| {
-        room.coordinator_proxy.cut(true);
-        room.worker_proxy.cut(true);
-        sleep(cut());
-        room.coordinator_proxy.cut(false);
-        room.worker_proxy.cut(false);
-    });
+    with_fault("server cut off", |room, _| cut(&[&room.coordinator_proxy, &room.worker_proxy]));
 }
 
 #[test]

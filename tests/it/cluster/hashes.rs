@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::server::{Process, Run, Server, run_hash, worker};
-use crate::program::{folder, json_lines};
+use crate::program::{CLIMBER, folder, json_lines};
 
 /// Starts a server with four workers.
 fn room() -> Option<(Server, Vec<Process>)> {
@@ -16,7 +16,7 @@ fn room() -> Option<(Server, Vec<Process>)> {
 fn both(server: &Server, arguments: &str) -> (Vec<Value>, Vec<Value>) {
     let (here, there) = (folder(), folder());
     let local = json_lines(here.path(), &format!("{arguments} --json"));
-    let distributed = Run::start(there.path(), arguments, &server.url()).lines();
+    let distributed = Run::start(there.path(), arguments, &server.url()).finished().0;
     (local, distributed)
 }
 
@@ -51,11 +51,10 @@ fn runs_of_every_strategy_and_of_learners_have_the_hash_of_one_machine() {
 #[test]
 fn comparisons_tables_and_exams_have_the_results_of_one_machine() {
     let Some((server, _workers)) = room() else { return };
-    let champion = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
     for arguments in [
         "study table1 --seeds 2 --population 20 --generations 2 --duration 2".to_owned(),
-        format!("exam {champion} --suite step-rate"),
-        format!("exam {champion} --trials 8"),
+        format!("exam {CLIMBER} --suite step-rate"),
+        format!("exam {CLIMBER} --trials 8"),
     ] {
         let (local, distributed) = both(&server, &arguments);
         // The last line names files, whose folders differ.
@@ -67,7 +66,7 @@ fn comparisons_tables_and_exams_have_the_results_of_one_machine() {
     let compare = "study methods --strategies ga,cma_es --controllers gait --baseline ga-gait --seeds 2 --evaluations 40 \
                    --population 20 --duration 2 --out";
     json_lines(here.path(), &format!("{compare} . --json"));
-    Run::start(there.path(), &format!("{compare} ."), &server.url()).lines();
+    Run::start(there.path(), &format!("{compare} ."), &server.url()).finished();
     let csv = |folder: &std::path::Path| {
         std::fs::read_to_string(folder.join("methods-runs.csv")).expect("read")
     };

@@ -60,15 +60,10 @@ fn with_liar(honest: u64) -> Option<(String, String)> {
     let liar = Arc::new(Liar { honest: AtomicU64::new(honest) });
     let (control, thread) = worker_with(&server.url(), "liar", 1, liar);
     let folder = folder();
-    let output =
-        Run::start(folder.path(), &format!("{RUN} --expect-workers 3"), &server.url()).output();
+    let run = Run::start(folder.path(), &format!("{RUN} --expect-workers 3"), &server.url());
+    let (lines, said) = run.finished();
     control.cancel();
     thread.join().expect("it ends");
-    let said = String::from_utf8(output.stderr).expect("UTF-8");
-    assert!(output.status.success(), "{said}");
-    let text = String::from_utf8(output.stdout).expect("UTF-8");
-    let lines: Vec<serde_json::Value> =
-        text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     Some((run_hash(&lines), said))
 }
 
@@ -92,13 +87,9 @@ fn a_worker_that_begins_to_flip_bits_later_is_found_and_everything_begins_again(
     let (_control, _thread) =
         worker_with(&server.url(), "liar", 1, Arc::new(Liar { honest: AtomicU64::new(150) }));
     let place = folder();
-    let output =
-        Run::start(place.path(), &format!("{run} --expect-workers 2"), &server.url()).output();
-    let said = String::from_utf8(output.stderr).expect("UTF-8");
+    let under_way = Run::start(place.path(), &format!("{run} --expect-workers 2"), &server.url());
+    let (lines, said) = under_way.finished();
     assert!(said.contains("worker liar on") && said.contains("begins again"), "{said}");
-    let text = String::from_utf8(output.stdout).expect("UTF-8");
-    let lines: Vec<serde_json::Value> =
-        text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     let local = json_lines(folder().path(), &format!("{run} --json"));
     assert_eq!(run_hash(&lines), run_hash(&local));
 }

@@ -1,9 +1,7 @@
 //! A server that refuses something: both sides name its answer. What lacks room waits and goes on by itself, and what can never get
 //! better ends at once.
 
-use std::process::Child;
 use std::sync::OnceLock;
-use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use super::refusals::refusals;
@@ -27,13 +25,8 @@ fn local_hash() -> &'static str {
 
 /// Waits for the success of a run, compares its hash, and returns its standard error.
 fn finished(mut run: Run) -> String {
-    run.wait_for_end();
-    let output = run.output();
-    let said = String::from_utf8(output.stderr).expect("UTF-8");
-    assert!(output.status.success(), "{said}");
-    let text = String::from_utf8(output.stdout).expect("UTF-8");
-    let lines: Vec<_> =
-        text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    run.wait_for_end(Duration::from_mins(2));
+    let (lines, said) = run.finished();
     assert_eq!(run_hash(&lines), local_hash());
     said
 }
@@ -42,18 +35,6 @@ fn finished(mut run: Run) -> String {
 fn stopped(worker: TellingWorker) -> String {
     worker.process.signal("-INT");
     worker.said()
-}
-
-/// Waits for the end of a process, which must fail within ten seconds, and returns its exit code.
-fn code_of(child: &mut Child) -> Option<i32> {
-    let began = Instant::now();
-    loop {
-        if let Some(status) = child.try_wait().expect("a state") {
-            return status.code();
-        }
-        assert!(began.elapsed() < Duration::from_secs(10), "it goes on");
-        sleep(Duration::from_millis(50));
-    }
 }
 
 #[test]
@@ -190,7 +171,8 @@ fn f3_rights_that_are_missing_only_later_end_a_run_and_a_worker_with_an_error() 
     let (place, url) = (folder(), server.url());
     let mut worker = worker_that_tells(&url);
     let mut under_way = Run::start(place.path(), RUN, &url);
-    assert_eq!(code_of(&mut worker.process.0), Some(1));
+    let status = worker.process.end_within(Duration::from_secs(10), "the worker");
+    assert_eq!(status.code(), Some(1));
     let said = worker.said();
     let last = said.lines().last().expect("a line");
     let words = "the work failed: the server says: Permissions Violation for Publish to \"snakes.result.climb-seed7-";
@@ -199,11 +181,7 @@ fn f3_rights_that_are_missing_only_later_end_a_run_and_a_worker_with_an_error() 
     let _worker = worker_that_tells(&url);
     server.change(&denied("snakes.work.>"));
     let _worker = worker_that_tells(&url);
-    let began = Instant::now();
-    while under_way.is_running() {
-        assert!(began.elapsed() < Duration::from_secs(30), "the run goes on");
-        sleep(Duration::from_millis(50));
-    }
+    under_way.wait_for_end(Duration::from_secs(30));
     let output = under_way.output();
     let said = String::from_utf8(output.stderr).expect("UTF-8");
     assert_eq!(output.status.code(), Some(1), "{said}");

@@ -3,23 +3,13 @@
 use std::path::Path;
 
 use super::server::{Server, free_port, is_there, worker};
+use crate::bad_input::refusal;
 use crate::program::{folder, run, snakes};
-
-/// Runs a command that must fail, and returns its only line on standard error.
-pub fn refusal(folder: &Path, arguments: &str) -> String {
-    let output = run(folder, arguments);
-    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(1), "{arguments}: {stderr}");
-    assert!(output.stdout.is_empty(), "{arguments}");
-    let lines: Vec<&str> = stderr.lines().collect();
-    assert_eq!(lines.len(), 1, "{arguments}: {stderr}");
-    lines[0].to_owned()
-}
 
 /// Returns the error lines of a coordinator and of a worker.
 pub fn refusals(folder: &Path, flags: &str) -> [String; 2] {
     let evolve = format!("--no-render --population 6 --generations 1 --duration 1 {flags}");
-    [refusal(folder, &evolve), refusal(folder, &format!("worker {flags}"))]
+    [evolve, format!("worker {flags}")].map(|arguments| refusal(folder, &arguments, 1))
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use futures_util::StreamExt;
 use serde_json::Value;
 
-use crate::program::{folder, run, snakes};
+use crate::program::{folder, json_of, run, snakes};
 
 /// A process that is killed when it is dropped.
 pub struct Process(pub Child);
@@ -22,6 +22,23 @@ impl Process {
         let id = self.0.id().to_string();
         let status = Command::new("kill").args([signal, &id]).status();
         assert!(status.expect("kill starts").success(), "kill {signal} {id}");
+    }
+
+    /// Returns how the process ended; `None` while it runs.
+    pub fn ended(&mut self) -> Option<ExitStatus> {
+        self.0.try_wait().expect("a state")
+    }
+
+    /// Waits for the end of the process, for at most `limit`; `what` names it in the failure message.
+    pub fn end_within(&mut self, limit: Duration, what: &str) -> ExitStatus {
+        let began = Instant::now();
+        loop {
+            if let Some(status) = self.ended() {
+                return status;
+            }
+            assert!(began.elapsed() < limit, "{what} goes on");
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 }
 
@@ -304,18 +321,14 @@ impl Run {
         self.stderr.wait_for(words);
     }
 
-    /// Waits until the coordinator has ended, for at most two minutes.
-    pub fn wait_for_end(&mut self) {
-        let began = Instant::now();
-        while self.is_running() {
-            assert!(began.elapsed() < Duration::from_mins(2), "the run goes on");
-            std::thread::sleep(Duration::from_millis(50));
-        }
+    /// Waits until the coordinator has ended, for at most `limit`.
+    pub fn wait_for_end(&mut self, limit: Duration) {
+        self.process.end_within(limit, "the run");
     }
 
     /// Returns whether the coordinator has not ended.
     pub fn is_running(&mut self) -> bool {
-        self.process.0.try_wait().expect("a state").is_none()
+        self.process.ended().is_none()
     }
 
     /// Kills the coordinator and starts it again.
@@ -341,19 +354,18 @@ impl Run {
         Output { status, stdout, stderr }
     }
 
-    /// Waits for the end of the coordinator, which must be a success, and returns its JSON lines.
-    pub fn lines(self) -> Vec<Value> {
+    /// Waits for the end of the coordinator, which must be a success, and returns its JSON lines and its messages.
+    pub fn finished(self) -> (Vec<Value>, String) {
         let arguments = self.arguments.clone();
         let output = self.output();
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{arguments}: {:?}\n{stderr}", output.status);
-        let text = String::from_utf8(output.stdout).expect("UTF-8");
-        text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+        let said = String::from_utf8(output.stderr).expect("UTF-8");
+        assert!(output.status.success(), "{arguments}: {:?}\n{said}", output.status);
+        (json_of(&output.stdout), said)
     }
 
     /// Waits for the end of the coordinator, and returns the hash of the run.
     pub fn hash(self) -> String {
-        run_hash(&self.lines())
+        run_hash(&self.finished().0)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Messages of runs and workers: one line for each event, without errors of the client library.
 
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::server::{Run, Server, TellingWorker, wait_for_workers, worker, worker_that_tells};
 use crate::program::{folder, run};
@@ -11,15 +11,8 @@ const LONG: &str = "--no-render --preset climb --seed 7 --population 200 --gener
 
 /// Stops a worker with the interrupt key, and returns its messages. The worker must end within two seconds.
 fn stopped(mut worker: TellingWorker, when: &str) -> String {
-    let began = Instant::now();
     worker.process.signal("-INT");
-    let status = loop {
-        if let Some(status) = worker.process.0.try_wait().expect("a state") {
-            break status;
-        }
-        assert!(began.elapsed() < Duration::from_secs(2), "{when}: the worker goes on");
-        sleep(Duration::from_millis(20));
-    };
+    let status = worker.process.end_within(Duration::from_secs(2), &format!("{when}: the worker"));
     let said = worker.said();
     assert!(status.success(), "{when}: {said}");
     let last = said.lines().last().expect("a line");

@@ -19,6 +19,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use snakes_lab::export::{ExportOrder, ExportProgress, ExportSource};
+use snakes_lab::run::RunControl;
+
 /// Environment variable that names the Python of the tests.
 const PYTHON_VARIABLE: &str = "SNAKES_PEER_PYTHON";
 
@@ -54,6 +57,12 @@ fn peer(program: &str, probe: &[&str], test: &str) -> Option<Command> {
 fn peer_python(modules: &str, test: &str) -> Option<Command> {
     let python = std::env::var(PYTHON_VARIABLE).unwrap_or_else(|_| "python3".to_owned());
     peer(&python, &["-c", &format!("import {modules}")], test)
+}
+
+/// Exports to a file whose ending decides the format.
+fn export(source: ExportSource, path: &Path) {
+    let order = ExportOrder::new(source, path.to_owned()).expect("a known ending");
+    order.carry_out(&ExportProgress::new(&|_| (), &RunControl::default())).expect("written");
 }
 
 /// Runs a command, which must succeed, and returns its standard output.

@@ -16,8 +16,7 @@ use snakes_core::rng::{Purpose, stream};
 use snakes_core::save::LoadedChampion;
 use snakes_core::score::{Trial, evaluate};
 use snakes_core::world::{JointTorque, Simulation, WorldPlan};
-use snakes_lab::export::{ExportOrder, ExportProgress, ExportSource, ExportedChampion};
-use snakes_lab::run::RunControl;
+use snakes_lab::export::{ExportSource, ExportedChampion};
 
 use super::{peer_python, peer_script, succeed};
 use crate::program::{folder, snakes};
@@ -255,9 +254,7 @@ pub(super) fn export(name: &str, champion: &Champion, path: &Path) {
     };
     let exported =
         ExportedChampion { name: name.to_owned(), file: path.to_owned(), loaded, note: None };
-    let source = ExportSource { champions: vec![exported], run: None };
-    let order = ExportOrder::new(source, path.to_owned()).expect("a known ending");
-    order.carry_out(&ExportProgress::new(&|_| (), &RunControl::default())).expect("written");
+    super::export(ExportSource { champions: vec![exported], run: None }, path);
 }
 
 /// Makes a champion of a random snake.

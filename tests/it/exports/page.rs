@@ -5,13 +5,13 @@ use std::process::Command;
 
 use serde_json::Value;
 use snakes_core::ENGINE_VERSION;
-use snakes_core::evolve::{Champion, Origin, begin};
+use snakes_core::evolve::begin;
 use snakes_core::save::{champion_text, load_champion, parse_champion, shipped_champion};
 use snakes_core::score::evaluate;
-use snakes_lab::export::{ExportOrder, ExportProgress, ExportSource};
-use snakes_lab::run::RunControl;
+use snakes_lab::export::ExportSource;
 use snakes_lab::run::verify::golden_plans;
 
+use super::models::champion_of;
 use super::{peer, peer_script, succeed};
 use crate::program::folder;
 
@@ -27,10 +27,7 @@ pub fn browser(test: &str) -> Option<Command> {
 
 fn export(files: &[&Path], page: &Path) {
     let files: Vec<_> = files.iter().map(|file| file.to_path_buf()).collect();
-    let order = ExportOrder::new(ExportSource::read(&files).expect("read"), page.to_owned());
-    let control = RunControl::default();
-    let progress = ExportProgress::new(&|_| (), &control);
-    order.expect("allowed").carry_out(&progress).expect("written");
+    super::export(ExportSource::read(&files).expect("read"), page);
 }
 
 fn found(browser: &mut Command) -> Value {
@@ -134,14 +131,10 @@ fn the_core_of_a_page_computes_the_golden_trajectories() {
     ];
     let mut expected = vec!["411cfb816946c8fb".to_owned()];
     for (_, plan) in &plans {
-        let trial = plan.trial_in(1);
         let genome = begin(plan).ask().swap_remove(0).genome;
-        let evaluation = evaluate(&genome, &trial);
-        let origin =
-            Origin { preset: "golden".to_owned(), seed: plan.seed, generation: 1, individual: 0 };
-        let champion = Champion { genome, trial, evaluation, chosen_by: None, origin };
+        let champion = champion_of(genome, plan.trial_in(1));
         texts.push(champion_text(&champion, None, &[]).expect("written"));
-        expected.push(format!("{:016x}", evaluation.trace_hash));
+        expected.push(format!("{:016x}", champion.evaluation.trace_hash));
     }
     let list = folder.path().join("champions.json");
     std::fs::write(&list, serde_json::to_string(&texts).expect("JSON")).expect("written");

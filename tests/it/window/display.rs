@@ -10,15 +10,18 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::picture::Picture;
-use crate::program::{folder, snakes};
+use crate::program::{CLIMBER, folder, snakes};
 
 /// The program in a window on a virtual display of its own.
 pub struct Studio {
     program: Mutex<Child>,
     xvfb: Child,
-    display: String,
-    window: String,
-    size: (i32, i32),
+    /// Name of the display.
+    pub display: String,
+    /// Number of the window in xdotool.
+    pub window: String,
+    /// Width and height of the window.
+    pub size: (i32, i32),
     folder: Arc<tempfile::TempDir>,
     /// Lock that allows one window at a time, because software rendering uses all cores.
     _turn: MutexGuard<'static, ()>,
@@ -31,8 +34,6 @@ const PATIENCE: Duration = Duration::from_secs(120);
 const BETWEEN_LOOKS: Duration = Duration::from_millis(100);
 /// Pause between two pictures that must be equal.
 const STILL_FOR: Duration = Duration::from_millis(700);
-/// Path of the champion on the stage of most tests.
-const CLIMBER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/saves/climber.ron");
 /// Default width and height of the window: wide enough for all cards over the stage, small enough to be drawn quickly.
 const SIZE: (i32, i32) = (1000, 860);
 
@@ -189,11 +190,6 @@ impl Studio {
         self.program.lock().expect("no panic").id()
     }
 
-    /// Returns width and height of the window.
-    pub fn size(&self) -> (i32, i32) {
-        self.size
-    }
-
     /// Waits for the window. The error is the log of the program if it ended instead.
     fn find_window(&mut self) -> Result<(), String> {
         let started = Instant::now();
@@ -265,11 +261,6 @@ impl Studio {
     /// Returns the working directory and home of the program.
     pub fn folder(&self) -> &Path {
         self.folder.path()
-    }
-
-    /// Returns the path of the file of `--places`.
-    pub fn places_file(&self) -> PathBuf {
-        self.folder.path().join(PLACES)
     }
 
     /// Returns the current picture of the display.
@@ -360,16 +351,6 @@ impl Studio {
         command.stdin(Stdio::piped()).stderr(Stdio::null()).spawn().expect("xdotool starts")
     }
 
-    /// Returns the name of the display.
-    pub fn display(&self) -> &str {
-        &self.display
-    }
-
-    /// Returns the number of the window in xdotool.
-    pub fn window(&self) -> &str {
-        &self.window
-    }
-
     fn xdotool_quietly(&self, arguments: &[&str]) -> String {
         let output = self.xdotool_command(arguments).output().expect("xdotool starts");
         String::from_utf8_lossy(&output.stdout).into_owned()
@@ -383,7 +364,7 @@ impl Studio {
 }
 
 /// Name of the file of `--places`.
-const PLACES: &str = "places.txt";
+pub const PLACES: &str = "places.txt";
 /// Name of the file with the program's standard error.
 const LOG: &str = "stderr.txt";
 /// Name of the preferences file.

@@ -19,7 +19,7 @@ impl Studio {
     /// Changes the layout of the keyboard.
     fn layout(&self, name: &str) {
         let mut command = Command::new("setxkbmap");
-        let status = command.arg(name).env("DISPLAY", self.display()).status();
+        let status = command.arg(name).env("DISPLAY", &self.display).status();
         assert!(status.expect("setxkbmap, which Xvfb needs, starts").success(), "{name}");
     }
 

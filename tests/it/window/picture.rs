@@ -9,7 +9,7 @@ pub struct Picture {
     width: i32,
     pixels: Vec<[u8; 3]>,
     /// Area that shows only the scene, without panels, cards and messages.
-    scene: Area,
+    pub scene: Area,
 }
 
 impl Picture {
@@ -31,11 +31,6 @@ impl Picture {
             .map(|pixel| [pixel[2], pixel[1], pixel[0]])
             .collect();
         Self { width: width as i32, pixels, scene }
-    }
-
-    /// Returns the rectangle of the scene.
-    pub fn scene(&self) -> Area {
-        self.scene
     }
 
     /// Returns the pixels of the scene.

@@ -1,6 +1,6 @@
 //! Finds controls in the window by name, using the list that the program writes for `--places`.
 
-use super::display::Studio;
+use super::display::{PLACES, Studio};
 
 /// A rectangle of the window, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,10 +56,6 @@ impl Place {
         let [label, value] = [parts.next()?, parts.next()?].map(ToOwned::to_owned);
         Some(Self { role, label, value, area })
     }
-
-    fn is_words(&self) -> bool {
-        self.role == "Label"
-    }
 }
 
 impl Studio {
@@ -78,7 +74,7 @@ impl Studio {
     /// Returns all listed controls, including those that are scrolled out of sight.
     pub fn places(&self) -> Vec<Place> {
         // The file is written atomically and does not exist before the first frame.
-        let text = std::fs::read_to_string(self.places_file()).unwrap_or_default();
+        let text = std::fs::read_to_string(self.folder().join(PLACES)).unwrap_or_default();
         text.lines().filter_map(Place::of_line).collect()
     }
 
@@ -113,7 +109,7 @@ impl Studio {
     /// Waits for a control with this label or, without one, for a text.
     pub fn place(&self, label: &str) -> Place {
         let place = self.place_where(label, |place| place.label == label);
-        let control = self.find(|place| place.label == label && !place.is_words());
+        let control = self.find(|place| place.label == label && place.role != "Label");
         control.unwrap_or(place)
     }
 
@@ -121,11 +117,6 @@ impl Studio {
     pub fn place_of(&self, role: &str, label: &str) -> Place {
         let what = format!("{role} {label:?}");
         self.place_where(&what, |place| place.role == role && place.label == label)
-    }
-
-    /// Waits for a button whose label starts with a text.
-    pub fn button_starting(&self, start: &str) -> Place {
-        self.place_where(start, |place| place.role == "Button" && place.label.starts_with(start))
     }
 
     /// Waits for a control whose label contains a text.
@@ -157,7 +148,8 @@ impl Studio {
 
     /// Clicks the centre of the button whose label starts with a text.
     pub fn click_starting(&self, start: &str) {
-        self.click_at(self.button_starting(start).area.middle());
+        let is_it = |place: &Place| place.role == "Button" && place.label.starts_with(start);
+        self.click_at(self.place_where(start, is_it).area.middle());
     }
 
     /// Clicks a control while a key such as `ctrl` is held down.
@@ -205,7 +197,7 @@ impl Studio {
         let top = self.place("Panel Watch").area;
         let below = self.find(|place| place.label == "Panel Champions").map(|tab| tab.area.top);
         // In a low window all panels are side by side at full height.
-        let bottom = below.filter(|below| *below > top.bottom).unwrap_or(self.size().1);
+        let bottom = below.filter(|below| *below > top.bottom).unwrap_or(self.size.1);
         for _ in 0..40 {
             let place = self.place_where(what, &is);
             let is_above = place.area.top < top.bottom;
@@ -241,7 +233,7 @@ impl Studio {
             let is_here = place.area.middle().1 > top && place.area.right < self.stage().left;
             place.role == "Button" && is_named && is_here
         };
-        let bottom = self.size().1;
+        let bottom = self.size.1;
         for _ in 0..40 {
             match self.find(is_it) {
                 Some(place) if place.area.middle().1 < bottom - 4 => return place,

@@ -15,7 +15,7 @@ fn has(studio: &Studio, label: &str) -> bool {
 
 /// Returns whether a text is legible from the back of a room: at least a twentieth of the window high.
 fn is_large(studio: &Studio, place: &Place) -> bool {
-    place.area.height() * 20 >= studio.size().1
+    place.area.height() * 20 >= studio.size.1
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn the_flag_and_f11_present_the_stage_with_a_large_caption_and_escape_restores_t
     let caption = studio.place_with("climber: ");
     assert!(is_large(&studio, &caption), "{caption:?}");
     let stage = studio.stage();
-    assert_eq!((stage.left, stage.right, stage.top), (0, studio.size().0, 0));
+    assert_eq!((stage.left, stage.right, stage.top), (0, studio.size.0, 0));
     assert!(stage.bottom <= caption.area.top, "nothing lies behind the caption");
     studio.key("space");
     studio.wait_for_title(", stopped at ");

@@ -87,7 +87,7 @@ fn play(test: &str, seed: u64, count: u32) {
         let action = hand.act(&studio.places(), size);
         size = action.resized.unwrap_or(size);
         session.note(number, &action);
-        if !send(&mut tool, &action, studio.window()) || !session.wait(&studio, action.frames) {
+        if !send(&mut tool, &action, &studio.window) || !session.wait(&studio, action.frames) {
             session.end(&studio);
             // The old display ends before the new one begins, because only one window is open at a time.
             drop((studio, tool.wait()));

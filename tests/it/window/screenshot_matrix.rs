@@ -18,7 +18,7 @@ const SCALES: [f32; 3] = [1.0, 1.5, 2.0];
 const LEAST: (f32, f32) = (800.0, 480.0);
 
 /// A run that ends in the first minute.
-const RUN: &str = "--preset climb --generations 30 --threads 2";
+pub const RUN: &str = "--preset climb --generations 30 --threads 2";
 
 /// Brings up a view.
 type Show = fn(&Studio);
@@ -42,7 +42,7 @@ const VIEWS: [(&str, Show); 14] = [
 ];
 
 /// Pauses the stage at this fraction of the trial's duration.
-fn hold(studio: &Studio, share: f64) {
+pub fn hold(studio: &Studio, share: f64) {
     if !studio.title().contains(", stopped") {
         studio.key("space");
         studio.wait_for_title(", stopped");
@@ -94,7 +94,7 @@ fn race(studio: &Studio) {
     hold(studio, 0.55);
 }
 
-fn charts(studio: &Studio) {
+pub fn charts(studio: &Studio) {
     studio.open_panel("Charts");
     studio.place("Chart: Fitness by generation");
 }
@@ -106,7 +106,14 @@ fn body(studio: &Studio) {
     hold(studio, 0.3);
 }
 
-fn library(studio: &Studio) {
+/// Clicks the save with this name in the library.
+fn click_save(studio: &Studio, name: &str) {
+    let start = format!("{name}, ");
+    let save = studio.place_where(name, |place| place.label.starts_with(&start));
+    studio.click_at(save.area.middle());
+}
+
+pub fn library(studio: &Studio) {
     studio.open_panel("Library");
     let is_read = || {
         let places = studio.places();
@@ -114,22 +121,12 @@ fn library(studio: &Studio) {
         has(" saves") && !has("not read yet")
     };
     studio.wait(is_read, || "a library that is read".to_owned());
-    studio.click_at(
-        studio
-            .place_where("the climber", |place| place.label.starts_with("climber, "))
-            .area
-            .middle(),
-    );
+    click_save(studio, "climber");
     studio.place("Replay");
 }
 
 fn creature(studio: &Studio) {
-    studio.click_at(
-        studio
-            .place_where("the creature", |place| place.label.starts_with("crawler, "))
-            .area
-            .middle(),
-    );
+    click_save(studio, "crawler");
     studio.click_label("Replay");
     studio.wait_for_title("showing crawler");
     hold(studio, 0.3);
@@ -154,26 +151,45 @@ fn presenting(studio: &Studio) {
 fn lesson(studio: &Studio) {
     studio.key("Escape");
     studio.place("Panel Change");
+    first_lesson(studio);
+}
+
+/// Begins the first lesson, and pauses its race.
+pub fn first_lesson(studio: &Studio) {
     studio.open_panel("Learn");
     studio.click_label("Begin lesson 1");
     studio.wait_for_title("showing a race of 3");
+    // The race waits for a guess.
     studio.scroll_and_click("Button", "Guess: original");
     studio.wait_for_title_without(", stopped");
     hold(studio, 0.6);
 }
 
+/// Opens the program with preferences and saves in the folder `scratch`, and waits for the end of its run; `None` if that is
+/// impossible.
+pub fn open_finished(
+    scratch: &Path,
+    test: &str,
+    fields: &str,
+    arguments: &str,
+    size: (i32, i32),
+) -> Option<Studio> {
+    let path = scratch.join("studio.ron");
+    std::fs::write(&path, preferences(fields)).expect("written");
+    let (preferences, saves) = (path.display(), scratch.join("saves"));
+    let arguments = format!("{arguments} --preferences {preferences} --saves {}", saves.display());
+    let studio = Studio::open_sized(test, &arguments, size)?;
+    studio.wait_for_title("finished");
+    Some(studio)
+}
+
 /// Takes the pictures of one size and scale in both themes; `None` if no window can be opened.
 fn take(folder: &Path, (width, height): (u16, u16), scale: f32) -> Option<()> {
     let scratch = super::folder();
-    let path = scratch.path().join("studio.ron");
     let quality = std::env::var("SNAKES_SCREENSHOTS_QUALITY").unwrap_or("fast".to_owned());
     let fields = format!("ui_scale: {scale:.1}, tour_is_over: true, quality: Some({quality:?})");
-    std::fs::write(&path, preferences(&fields)).expect("written");
-    let (preferences, saves) = (path.display(), scratch.path().join("saves"));
-    let arguments =
-        format!("{RUN} --theme light --preferences {preferences} --saves {}", saves.display());
-    let studio = Studio::open_sized("matrix", &arguments, (width.into(), height.into()))?;
-    studio.wait_for_title("finished");
+    let (arguments, size) = (format!("{RUN} --theme light"), (width.into(), height.into()));
+    let studio = open_finished(scratch.path(), "matrix", &fields, &arguments, size)?;
     for (view, show) in VIEWS {
         show(&studio);
         for theme in ["light", "dark"] {

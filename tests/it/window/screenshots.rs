@@ -7,10 +7,8 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::display::{Studio, preferences};
-
-/// A run that improves quickly.
-const RUN: &str = "--preset climb --generations 30 --threads 2";
+use super::display::Studio;
+use super::screenshot_matrix::{RUN, charts, first_lesson, hold, library, open_finished};
 
 /// The README's screenshots; only these are written to `assets/screenshots`.
 const IN_README: [&str; 6] = ["single", "race", "charts", "library", "lesson", "senses"];
@@ -44,19 +42,9 @@ impl Album {
 
     /// Opens the program; `None` if that is impossible. Saves are shared between screenshots, everything else is fresh.
     fn open(&self, arguments: &str, tour_is_over: bool) -> Option<Studio> {
-        let path = self.scratch.path().join("studio.ron");
         let fields = format!("ui_scale: {}, tour_is_over: {tour_is_over}", self.scale);
-        std::fs::write(&path, preferences(&fields)).expect("written");
-        let saves = self.scratch.path().join("saves");
-        let arguments = format!(
-            "{arguments} --theme {} --preferences {} --saves {}",
-            self.theme,
-            path.display(),
-            saves.display()
-        );
-        let studio = Studio::open_sized("screenshots", &arguments, self.size)?;
-        studio.wait_for_title("finished");
-        Some(studio)
+        let arguments = format!("{arguments} --theme {}", self.theme);
+        open_finished(self.scratch.path(), "screenshots", &fields, &arguments, self.size)
     }
 
     /// Writes a screenshot once the display is still.
@@ -80,9 +68,7 @@ impl Album {
         studio.key("a");
         studio.key("n");
         studio.wait_for_title("showing a race of 6");
-        studio.key("space");
-        studio.wait_for_title(", stopped");
-        studio.seek(0.55);
+        hold(&studio, 0.55);
         self.keep(&studio, "race");
 
         studio.key("0");
@@ -90,9 +76,7 @@ impl Album {
         studio.open_panel("Change");
         studio.drag_slider("Friction", 0.3);
         studio.wait_for_title("what-if");
-        studio.key("space");
-        studio.wait_for_title(", stopped");
-        studio.seek(0.5);
+        hold(&studio, 0.5);
         self.keep(&studio, "what-if");
         drop(studio);
 
@@ -100,11 +84,10 @@ impl Album {
         let robust =
             concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/robust.ron --preset quick");
         let studio = self.open(robust, true)?;
-        for key in ["a", "0", "space", "v", "j", "b"] {
+        for key in ["a", "0", "v", "j", "b"] {
             studio.key(key);
         }
-        studio.wait_for_title(", stopped");
-        studio.seek(0.3);
+        hold(&studio, 0.3);
         let limb = studio.still_picture().find(super::is_red).expect("a red limb");
         studio.double_click_at(limb);
         self.keep(&studio, "contacts");
@@ -116,17 +99,13 @@ impl Album {
         let feeler =
             concat!("replay ", env!("CARGO_MANIFEST_DIR"), "/saves/feeler.ron --preset quick");
         let studio = self.open(feeler, true)?;
-        for key in ["a", "0", "space"] {
-            studio.key(key);
-        }
-        studio.wait_for_title(", stopped");
-        studio.seek(0.2);
+        studio.key("a");
+        studio.key("0");
+        hold(&studio, 0.2);
         studio.open_panel("Senses");
         studio.scroll_and_click("CheckBox", "Touch");
         studio.wait_for_title("what-if");
-        studio.key("space");
-        studio.wait_for_title(", stopped");
-        studio.seek(0.76);
+        hold(&studio, 0.76);
         self.keep(&studio, "senses");
         Some(())
     }
@@ -136,29 +115,13 @@ impl Album {
         let studio = self.open(RUN, true)?;
         studio.key("a");
         studio.key("0");
-        studio.key("space");
-        studio.wait_for_title(", stopped");
-        studio.seek(0.42);
+        hold(&studio, 0.42);
         self.keep(&studio, "single");
 
-        studio.open_panel("Charts");
-        studio.place("Chart: Fitness by generation");
+        charts(&studio);
         self.keep(&studio, "charts");
 
-        studio.open_panel("Library");
-        let is_read = || {
-            let places = studio.places();
-            let has = |part: &str| places.iter().any(|place| place.label.contains(part));
-            has(" saves") && !has("not read yet")
-        };
-        studio.wait(is_read, || "a library that is read".to_owned());
-        studio.click_at(
-            studio
-                .place_where("the climber", |place| place.label.starts_with("climber, "))
-                .area
-                .middle(),
-        );
-        studio.place("Replay");
+        library(&studio);
         self.keep(&studio, "library");
 
         studio.key("question");
@@ -167,15 +130,7 @@ impl Album {
         studio.key("Escape");
         studio.wait_for_no("Keyboard and mouse");
 
-        studio.open_panel("Learn");
-        studio.click_label("Begin lesson 1");
-        studio.wait_for_title("showing a race of 3");
-        // The race waits for a guess.
-        studio.scroll_and_click("Button", "Guess: original");
-        studio.wait_for_title_without(", stopped");
-        studio.key("space");
-        studio.wait_for_title(", stopped");
-        studio.seek(0.6);
+        first_lesson(&studio);
         self.keep(&studio, "lesson");
         drop(studio);
 

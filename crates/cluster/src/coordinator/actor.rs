@@ -123,7 +123,7 @@ impl Actor {
             rng,
         );
         let (sender, news) = channel(MOST_WAITING);
-        let runtime = broker.runtime();
+        let runtime = &broker.runtime;
         let tasks = vec![
             runtime.spawn(fetch_results(Arc::clone(&broker), options.run.clone(), sender.clone())),
             runtime.spawn(hear_notices(workers, runs, sender)),
@@ -170,7 +170,7 @@ impl Actor {
                 }
             }
         }
-        let staff = self.ledger.staff();
+        let staff = &self.ledger.staff;
         let mut status = self.common.status();
         (status.workers, status.threads) = (staff.workers(), staff.threads());
         status.audits = self.ledger.audits();
@@ -197,7 +197,7 @@ impl Actor {
             // The ledger gives the batch up by then, and publishes its tasks again.
             let _ = tokio::time::timeout(LOST_AFTER, stored).await;
         };
-        self.publishing.spawn_on(publish, self.broker.runtime());
+        self.publishing.spawn_on(publish, &self.broker.runtime);
     }
 
     /// Removes all batches of this run from the server, also those that are still being published.
@@ -206,7 +206,7 @@ impl Actor {
         let broker = Arc::clone(&self.broker);
         let subject = work_subject(&self.options.proof, &self.options.run);
         self.tasks.retain(|task| !task.is_finished());
-        self.tasks.push(self.broker.runtime().spawn(async move {
+        self.tasks.push(self.broker.runtime.spawn(async move {
             // Batches that cannot be removed stay until a worker takes them.
             if let Ok(stream) = broker.work_stream().await {
                 let _ = remove(&stream, &subject).await;
@@ -252,7 +252,7 @@ impl Actor {
         let answer = move |line| {
             let _ = commands.send(CoordinatorCommand::Audited(key, line));
         };
-        let runtime = self.broker.runtime();
+        let runtime = &self.broker.runtime;
         match audit.checker {
             Checker::Coordinator => {
                 let compute: Arc<dyn Compute> = Arc::clone(&self.options.compute);
@@ -270,7 +270,7 @@ impl Actor {
                     shared: audit.shared,
                     tasks: vec![audit.task],
                 };
-                let client = self.broker.client().clone();
+                let client = self.broker.client.clone();
                 runtime.spawn(async move {
                     let request = async_nats::Request::new()
                         .payload(work.encode().into())
@@ -333,13 +333,13 @@ impl Actor {
     /// Sends a notice at once if the reason for which the run waits has changed since the last notice: a run may end before the
     /// next notice is due.
     async fn tell_of_trouble(&mut self) {
-        if self.told_trouble != self.broker.connection().trouble() {
+        if self.told_trouble != self.broker.connection.trouble() {
             self.tell().await;
         }
     }
 
     async fn tell(&mut self) {
-        self.told_trouble = self.broker.connection().trouble();
+        self.told_trouble = self.broker.connection.trouble();
         let notice = RunNotice {
             format: WIRE_FORMAT,
             run: self.options.run.clone(),
@@ -348,11 +348,11 @@ impl Actor {
             processors: Processors::THIS,
             proof: self.options.proof.clone(),
             pending: self.ledger.pending() as u64,
-            results: self.ledger.results(),
-            set_aside: self.ledger.staff().set_aside_names(),
+            results: self.ledger.results,
+            set_aside: self.ledger.staff.set_aside_names(),
             trouble: self.told_trouble.clone(),
         };
-        let _ = self.broker.client().publish(RUN_NOTICES, line_of(&notice).into()).await;
+        let _ = self.broker.client.publish(RUN_NOTICES, line_of(&notice).into()).await;
     }
 }
 
@@ -363,7 +363,7 @@ pub fn run_actor(
     mut actor: Actor,
     mut commands: UnboundedReceiver<CoordinatorCommand>,
 ) {
-    broker.runtime().block_on(async {
+    broker.runtime.block_on(async {
         let mut ticks = tokio::time::interval(TICK);
         let mut notices = tokio::time::interval(NOTICE_INTERVAL);
         loop {
@@ -380,7 +380,7 @@ pub fn run_actor(
                     actor.tell_of_trouble().await;
                 }
                 _ = notices.tick() => actor.tell().await,
-                refusal = broker.connection().refusal() => {
+                refusal = broker.connection.refusal() => {
                     let refusal = broker.refused("the run", refusal).to_string();
                     actor.common.status().refusal = Some(refusal);
                     break;
@@ -389,7 +389,7 @@ pub fn run_actor(
         }
         actor.tasks.iter().for_each(JoinHandle::abort);
         let is_refused = actor.common.status().refusal.is_some();
-        if !is_refused && !actor.broker.connection().is_lost() {
+        if !is_refused && !actor.broker.connection.is_lost() {
             let end = async {
                 actor.tell_of_trouble().await;
                 clean_up(&actor).await;

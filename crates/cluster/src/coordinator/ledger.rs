@@ -88,7 +88,8 @@ pub struct Ledger {
     next_batch: u64,
     /// Paused calls, whose tasks are held back.
     paused: BTreeSet<CallId>,
-    staff: Staff,
+    /// The workers.
+    pub staff: Staff,
     audits: Audits,
     /// Results that no call has requested yet, by key: the worker's name and the outcome's text.
     early: BTreeMap<u64, (String, Arc<str>)>,
@@ -96,7 +97,8 @@ pub struct Ledger {
     makes_room: bool,
     /// Moving average of the time of an evaluation on a worker, in s. `None` before the first result.
     evaluation_s: Option<f64>,
-    results: u64,
+    /// Number of results that were delivered.
+    pub results: u64,
     rng: ChaCha8Rng,
 }
 
@@ -134,19 +136,9 @@ impl Ledger {
         self.tasks.len()
     }
 
-    /// Returns the number of results that were delivered.
-    pub fn results(&self) -> u64 {
-        self.results
-    }
-
     /// Returns the number of results that are being checked.
     pub fn audits(&self) -> usize {
         self.audits.len()
-    }
-
-    /// Returns the workers.
-    pub fn staff(&self) -> &Staff {
-        &self.staff
     }
 
     /// Begins a call with these tasks. The index of a task is its position in `texts`.

@@ -39,7 +39,7 @@ pub async fn fetch_results(broker: Arc<Broker>, run: String, news: Sender<News>)
     loop {
         match puller.next().await {
             Ok(Pulled::Message(message)) => {
-                broker.connection().succeeded(TASK);
+                broker.connection.succeeded(TASK);
                 match ResultBatch::decode(&message.payload) {
                     Ok(results) if results.run == run => {
                         if news.send(News::Results(results)).await.is_err() {
@@ -52,14 +52,14 @@ pub async fn fetch_results(broker: Arc<Broker>, run: String, news: Sender<News>)
                 // Without an acknowledgement the results arrive again, but count only once.
                 let _ = message.ack().await;
             }
-            Ok(Pulled::Nothing) => broker.connection().succeeded(TASK),
+            Ok(Pulled::Nothing) => broker.connection.succeeded(TASK),
             Ok(Pulled::StoreLost) => {
                 if news.send(News::StoreLost).await.is_err() {
                     return;
                 }
             }
             Err(trouble) => {
-                broker.connection().failed(TASK, &trouble);
+                broker.connection.failed(TASK, &trouble);
                 tokio::time::sleep(RETRY_PAUSE).await;
             }
         }
@@ -87,12 +87,12 @@ pub async fn hear_notices(mut workers: Subscriber, mut runs: Subscriber, news: S
 /// Answers workers that request the trial or the genome that tasks share.
 pub async fn answer_shared(broker: Arc<Broker>, run: String, common: Arc<Common>) {
     let subject = shared_subject(&run, "*");
-    let Ok(mut requests) = broker.client().subscribe(subject).await else { return };
+    let Ok(mut requests) = broker.client.subscribe(subject).await else { return };
     while let Some(request) = requests.next().await {
         let hash = request.subject.rsplit('.').next().unwrap_or_default();
         let text = hash_of("hash", hash).ok().and_then(|hash| common.texts.get(hash));
         if let (Some(reply), Some(text)) = (request.reply, text) {
-            let _ = broker.client().publish(reply, pack(text.to_string()).into()).await;
+            let _ = broker.client.publish(reply, pack(text.to_string()).into()).await;
         }
     }
 }

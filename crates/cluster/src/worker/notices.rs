@@ -20,7 +20,7 @@ use snakes_lab::run::with_threads;
 /// an error if it stops because all coordinators compute with another engine, or because the server refuses for good
 /// what the worker needs.
 pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
-    let client = place.broker.client();
+    let client = &place.broker.client;
     let mut heard = client.subscribe(RUN_NOTICES).await.ok();
     let mut ticks = tokio::time::interval(NOTICE_INTERVAL);
     let mut rate = RecentRate::default();
@@ -39,14 +39,14 @@ pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
                 tell(&place, rate.update(Instant::now(), place.evaluations.load(Relaxed)), true).await;
                 return None;
             }
-            refusal = place.broker.connection().refusal() => {
+            refusal = place.broker.connection.refusal() => {
                 place.control.cancel();
                 return Some(place.broker.refused("the work", refusal));
             }
             _ = ticks.tick() => {
                 let evaluations = place.evaluations.load(Relaxed);
                 // A lost connection is reported elsewhere and needs no further lines.
-                let news = (!place.broker.connection().is_lost())
+                let news = (!place.broker.connection.is_lost())
                     .then(|| place.activity.news(Instant::now(), evaluations));
                 if let Some(line) = news.flatten() {
                     say(&line);
@@ -87,7 +87,7 @@ pub async fn tell_and_listen(place: Arc<Workplace>) -> Option<ClusterError> {
 
 async fn tell(place: &Workplace, per_s: f32, leaves: bool) {
     let notice = own_notice(place, per_s, leaves);
-    let _ = place.broker.client().publish(WORKER_NOTICES, line_of(&notice).into()).await;
+    let _ = place.broker.client.publish(WORKER_NOTICES, line_of(&notice).into()).await;
 }
 
 fn own_notice(place: &Workplace, per_s: f32, leaves: bool) -> WorkerNotice {
@@ -102,7 +102,7 @@ fn own_notice(place: &Workplace, per_s: f32, leaves: bool) -> WorkerNotice {
         evaluations: place.evaluations.load(Relaxed),
         per_s,
         redelivered: place.redelivered.load(Relaxed),
-        trouble: place.broker.connection().trouble(),
+        trouble: place.broker.connection.trouble(),
         leaves,
     }
 }
@@ -131,7 +131,7 @@ impl RecentRate {
 /// Answers requests to check a result of another worker.
 pub async fn answer_audits(place: Arc<Workplace>) {
     let subject = audit_subject(&place.options.name);
-    let Ok(mut requests) = place.broker.client().subscribe(subject).await else { return };
+    let Ok(mut requests) = place.broker.client.subscribe(subject).await else { return };
     while let Some(request) = requests.next().await {
         let (Some(reply), Ok(work)) = (request.reply, WorkBatch::decode(&request.payload)) else {
             continue;
@@ -141,7 +141,7 @@ pub async fn answer_audits(place: Arc<Workplace>) {
         // If a request has no answer, the coordinator's machine makes the check.
         let Ok(check) = with_threads(check) else { continue };
         if let Ok(Some(results)) = check.await {
-            let _ = place.broker.client().publish(reply, results.encode().into()).await;
+            let _ = place.broker.client.publish(reply, results.encode().into()).await;
         }
     }
 }

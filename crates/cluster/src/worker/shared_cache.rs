@@ -23,7 +23,7 @@ impl SharedCache {
     pub async fn fetch(&self, broker: &Broker, work: &WorkBatch) -> Option<Arc<Shared>> {
         let subject = shared_subject(&work.run, &hex(work.shared));
         let request = async_nats::Request::new().timeout(Some(ANSWER_WAIT));
-        let answer = broker.client().send_request(subject, request).await;
+        let answer = broker.client.send_request(subject, request).await;
         let bytes = answer.ok()?.payload;
         let read = unpack(&bytes).and_then(|text| {
             // The coordinator hashed its own text, so an equal hash means an equal trial or genome.

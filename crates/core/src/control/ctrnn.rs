@@ -130,16 +130,13 @@ impl Controller for CtrnnController {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::control::perception::{JointSenses, LimbSenses};
-    use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
-    use crate::rng::{Purpose, stream};
+    use crate::control::limb_neurons::tests::standing;
+    use crate::genome::{ControllerGenes, ControllerKind};
     use crate::score::Trial;
 
     #[test]
     fn a_neuron_leaks_towards_its_input_at_the_same_speed_at_every_step_rate() {
-        let space = GenomeSpace { controller: ControllerKind::Ctrnn, ..GenomeSpace::default() };
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = space.random_genome(Trial::default().genome_shape(), &mut rng);
+        let genome = Trial::default().random_genome_of(ControllerKind::Ctrnn, 0);
         let ControllerGenes::Ctrnn(mut genes) = genome.controller else { panic!("ctrnn") };
         for neuron in &mut genes.neurons {
             neuron.log_time_constant = 0.0;
@@ -149,11 +146,8 @@ mod tests {
         // The pitch of the front limb, 0.5, pulls the first neuron towards 2.
         genes.neurons[0].inputs[6] = 4.0;
         for steps_per_s in [30, 60, 240] {
-            let mut observation = Observation { steps_per_s, ..Observation::default() };
-            observation.joints = vec![Default::default(); 4];
-            observation.perception.joints = vec![JointSenses::default(); 4];
-            let limb = LimbSenses { pitch: 0.5, ..LimbSenses::default() };
-            observation.perception.limbs = vec![limb; 5];
+            let mut observation = Observation { steps_per_s, ..standing() };
+            observation.perception.limbs.iter_mut().for_each(|limb| limb.pitch = 0.5);
             let mut controller = CtrnnController::new(genes.clone());
             let mut torques = [JointTorque::default(); 4];
             (0..steps_per_s).for_each(|_| controller.act(&observation, &mut torques));

@@ -66,7 +66,7 @@ pub(super) struct RulePlace {
 impl RulePlace {
     /// Returns the rules of an XCS, in order of birth.
     pub fn rules_of_xcs(&self, system: &Xcs) -> Vec<ActiveRule> {
-        let rules = system.rules().iter().map(|rule| ActiveRule {
+        let rules = system.rules.iter().map(|rule| ActiveRule {
             fitness: Some(rule.fitness),
             experience: Some(rule.experience),
             ..self.rule(rule.condition, rule.action, rule.prediction)
@@ -76,7 +76,7 @@ impl RulePlace {
 
     /// Returns the rules of a ZCS, in order of birth.
     pub fn rules_of_zcs(&self, system: &Zcs) -> Vec<ActiveRule> {
-        let rules = system.rules().iter();
+        let rules = system.rules.iter();
         rules.map(|rule| self.rule(rule.condition, rule.action, rule.strength)).collect()
     }
 

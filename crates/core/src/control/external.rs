@@ -54,16 +54,13 @@ impl ExternalControl {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
-    use crate::rng::{Purpose, stream};
+    use crate::genome::{ControllerGenes, ControllerKind};
     use crate::score::{Rollout, Trial};
 
     #[test]
     fn servos_from_outside_move_a_snake_as_the_servos_of_a_gait_do() {
         let trial = Trial { duration_s: 2.0, ..Trial::default() };
-        let space = GenomeSpace { controller: ControllerKind::Gait, ..GenomeSpace::default() };
-        let mut rng = stream(1, 1, 3, Purpose::Birth);
-        let genome = space.random_genome(trial.genome_shape(), &mut rng);
+        let genome = trial.random_genome_of(ControllerKind::Gait, 3);
         let ControllerGenes::Gait(gait) = genome.controller.clone() else { panic!("a gait") };
         let mut inside = Rollout::new(&genome, &trial);
         while inside.advance() {}

@@ -48,9 +48,8 @@ impl Controller for GaitFollower {
 mod tests {
     use crate::control::{ActiveSenses, ControlLoop};
     use crate::evolve::Champion;
+    use crate::genome::ControllerGenes;
     use crate::genome::controllers::{Gait, JointWaves, Steering, Wave, Waves};
-    use crate::genome::{ControllerGenes, GenomeSpace};
-    use crate::rng::{Purpose, stream};
     use crate::save::shipped_champion;
     use crate::score::{Perturbation, Rollout, Trial};
     use crate::world::{
@@ -71,8 +70,7 @@ mod tests {
         trial.agent.twist_limit_rad = Some(3.0.into());
         trial.agent.joint_damping_nms_per_rad = joint_damping.into();
         trial.agent.angular_damping_per_s = 0.0;
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let mut genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let mut genome = trial.random_genome(0);
         let straight = Wave { offset: 0.0, harmonics: Vec::new() };
         let joints = vec![JointWaves { bend: straight.clone(), twist: straight }];
         genome.controller = ControllerGenes::Gait(Gait {

@@ -112,7 +112,8 @@ pub(super) mod tests {
     use crate::rng::{Purpose, stream};
     use crate::score::Trial;
 
-    fn random(is_shared: bool) -> LimbNeurons {
+    /// Returns random neurons: the same in all limbs, or own ones in each.
+    pub fn random(is_shared: bool) -> LimbNeurons {
         let controller = ControllerKind::LimbNeurons;
         let mut space = GenomeSpace { controller, ..GenomeSpace::default() };
         space.network.limb_neurons_shared = is_shared;

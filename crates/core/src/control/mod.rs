@@ -152,8 +152,6 @@ impl ControlLoop {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::GenomeSpace;
-    use crate::rng::{Purpose, stream};
     use crate::score::Trial;
 
     /// A controller that counts its steps, and expects joint states only if it needs them.
@@ -180,8 +178,7 @@ mod tests {
     fn a_clone_continues_with_the_state_of_its_controller() {
         for joints in [false, true] {
             let trial = Trial::default();
-            let mut rng = stream(1, 1, 0, Purpose::Birth);
-            let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+            let genome = trial.random_genome(0);
             let world = Simulation::new(&trial.world_plan(&genome));
             let mut torques = vec![JointTorque::default(); world.joint_states().len()];
             let counter = Counter { senses: Senses { joints, ..Senses::default() }, acted: 0.0 };

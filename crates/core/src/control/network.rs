@@ -220,14 +220,11 @@ impl Controller for CentralController {
 mod tests {
     use super::*;
     use crate::control::limb_neurons::tests::standing;
-    use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
-    use crate::rng::{Purpose, stream};
+    use crate::genome::{ControllerGenes, ControllerKind};
     use crate::score::Trial;
 
     fn modular() -> ModularNetwork {
-        let space = GenomeSpace { controller: ControllerKind::Modular, ..GenomeSpace::default() };
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = space.random_genome(Trial::default().genome_shape(), &mut rng);
+        let genome = Trial::default().random_genome_of(ControllerKind::Modular, 0);
         let ControllerGenes::Modular(network) = genome.controller else { panic!("modular") };
         network
     }

@@ -218,8 +218,6 @@ fn share_of(force_n: f32, weight_n: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::GenomeSpace;
-    use crate::rng::{Purpose, stream};
     use crate::score::{Rollout, Trial};
 
     fn updated(perception: &mut Perception, rollout: &Rollout, active: &ActiveSenses) {
@@ -234,11 +232,9 @@ mod tests {
         let mut far = near.clone();
         far.start_y_m += 4.0;
         far.stairs.first_riser_y_m += 4.0;
-        let space = GenomeSpace::default();
         let mut most = [0.0_f32; Perception::count(4)];
         for individual in 0..8 {
-            let mut rng = stream(1, 1, individual, Purpose::Birth);
-            let genome = space.random_genome(near.genome_shape(), &mut rng);
+            let genome = near.random_genome(individual);
             let mut rollouts = [&near, &far].map(|trial| Rollout::new(&genome, trial));
             let mut perceptions = [Perception::default(), Perception::default()];
             perceptions.iter_mut().for_each(|perception| perception.take_step(&near.physics));
@@ -265,8 +261,7 @@ mod tests {
     #[test]
     fn a_sense_that_does_not_work_keeps_its_value_and_the_others_go_on() {
         let trial = Trial { start_y_m: -3.0, ..Trial::default() };
-        let mut rng = stream(1, 1, 2, Purpose::Birth);
-        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let genome = trial.random_genome(2);
         let mut rollout = Rollout::new(&genome, &trial);
         let mut perception = Perception::default();
         perception.take_step(&trial.physics);

@@ -3,8 +3,9 @@
 mod activity;
 
 use super::perception::Perception;
-use super::sense::{GAP_SCALE_M, SPEED_SCALE_M_S};
+use super::sense::GAP_SCALE_M;
 use super::servo::JointServos;
+use super::situation::{MOVED_M, way_m};
 use super::{Activity, Controller, Observation, Senses, WaveUses};
 use crate::genome::controllers::{JointGroup, RULE_SENSES, RuleGenes, WaveRule, bits_of};
 use crate::world::JointTorque;
@@ -13,8 +14,6 @@ use crate::world::JointTorque;
 const DECISIONS_PER_S: u64 = 4;
 /// Time in which the targets change from one wave to the next, in s: less than the time between decisions.
 const BLEND_S: f64 = 0.2;
-/// Distance since the last decision above which the middle limb counts as moved ahead, in m.
-const MOVED_M: f32 = 0.1;
 /// The two halves of the joints. Each half follows a wave.
 const HALVES: [JointGroup; 2] = [JointGroup::Front, JointGroup::Rear];
 
@@ -161,8 +160,7 @@ impl Controller for RuleFollower {
             })
             .collect();
         self.servo.pull(observation, targets.into_iter(), torques);
-        let speed_m_s = observation.perception.snake.speed_ahead * SPEED_SCALE_M_S;
-        self.way_m += speed_m_s / observation.steps_per_s as f32;
+        self.way_m += way_m(&observation.perception, observation.steps_per_s);
     }
 
     fn activity(&self, observation: &Observation, joint: usize) -> Option<Activity> {

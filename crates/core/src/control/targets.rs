@@ -41,17 +41,15 @@ impl Controller for TargetFollower {
 #[cfg(test)]
 mod tests {
     use crate::control::ExternalControl;
+    use crate::genome::Genome;
     use crate::genome::controllers::RecordedActions;
-    use crate::genome::{Genome, GenomeSpace};
-    use crate::rng::{Purpose, stream};
     use crate::score::{Rollout, Trial, evaluate};
     use crate::world::JointTorque;
 
     #[test]
     fn r10_recorded_targets_and_torques_replay_the_episode_bit_for_bit() {
         let trial = Trial { duration_s: 4.0, ..Trial::default() };
-        let mut rng = stream(1, 1, 3, Purpose::Birth);
-        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let genome = trial.random_genome(3);
         for (servo, steps_per_action) in
             [(Some([800.0, 40.0]), 1), (Some([300.0, 0.0]), 7), (None, 7), (None, 100)]
         {

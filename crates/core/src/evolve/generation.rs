@@ -11,7 +11,7 @@ use crate::check::{Invalid, hex_hash, within};
 use crate::score::{EndingKind, Evaluation, FITNESS_RANGE, Trial};
 
 /// Record of a finished generation.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GenerationRecord {
     /// Number of the generation; the first is 1.
@@ -228,22 +228,7 @@ impl GenerationRecord {
 
     /// Makes a record of healthy individuals without statistics, for tests.
     pub fn of_test(generation: u32, evaluations: u32) -> Self {
-        Self {
-            generation,
-            evaluations,
-            simulations: None,
-            disqualified: 0,
-            crashed: 0,
-            on_landing: 0,
-            first_on_landing: None,
-            statistics: None,
-            chosen_by: None,
-            species: Vec::new(),
-            endings: Vec::new(),
-            rung: None,
-            stairs: None,
-            hash: 0x0123_4567_89ab_cdef,
-            elapsed_s: 1.0,
-        }
+        let hash = 0x0123_4567_89ab_cdef;
+        Self { generation, evaluations, hash, elapsed_s: 1.0, ..Self::default() }
     }
 }

@@ -69,19 +69,9 @@ pub struct Transfer {
     pub to: u32,
 }
 
-impl Agent {
-    /// Checks that a run with this plan can have found the agent.
-    ///
-    /// # Errors
-    /// Fails if the agent's genome does not fit the plan.
-    pub fn check(&self, plan: &RunPlan) -> Result<(), Invalid> {
-        plan.check_genome(&self.genome)
-    }
-}
-
 impl StairsNode {
-    /// Makes the first staircase of a run, without an agent.
-    pub(super) fn root(stairs: StairsGenome) -> Self {
+    /// Makes a staircase without a parent, such as the first of a run, and without an agent.
+    pub(super) fn new(stairs: StairsGenome) -> Self {
         Self {
             stairs,
             parent: None,
@@ -108,7 +98,7 @@ impl StairsNode {
             return Err(Invalid::new("parent", found, "earlier stairs, and none of the first"));
         }
         within("born", self.born, 0..=round)?;
-        self.agent.as_ref().map_or(Ok(()), |agent| agent.check(plan))
+        self.agent.as_ref().map_or(Ok(()), |agent| plan.check_genome(&agent.genome))
     }
 
     /// Returns a trial of the run on this staircase.

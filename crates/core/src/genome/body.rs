@@ -5,7 +5,7 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use super::chain::{Segment, check_segments, segment_genes, waiting_genes};
 use super::creature::{BodyNode, check_creature, grow, hash_structure, joint_tree, node_genes};
-use super::gene::{GeneRange, Genes, check_limits};
+use super::gene::{Gene, GeneRange, Genes, check_limits, widen};
 use super::limits::{DENSITY, LIMIT};
 use super::space::GenomeSpace;
 use crate::check::{Invalid, within};
@@ -76,12 +76,8 @@ impl BodyGenes {
         for segment in &self.segments {
             hash.update(&segment.id.to_le_bytes());
         }
-        self.clone().waiting_genes(
-            &GenomeSpace::default(),
-            &mut Genes::to(&mut |_, value| {
-                hash.update(&value.to_bits().to_le_bytes());
-            }),
-        );
+        let mut add = |_: Gene<'_>, value: &mut f32| hash.update(&value.to_bits().to_le_bytes());
+        self.clone().waiting_genes(&GenomeSpace::default(), &mut Genes::to(&mut add));
     }
 
     /// Returns the genes of a body with these blocks.
@@ -163,8 +159,7 @@ impl BodyGenes {
             let of_segments = self.segments.iter().map(|segment| segment.density_kg_m3);
             let of_nodes = self.nodes.iter().map(|node| node.density_kg_m3);
             for density_kg_m3 in of_segments.chain(of_nodes) {
-                space.density_min_kg_m3 = space.density_min_kg_m3.min(density_kg_m3);
-                space.density_max_kg_m3 = space.density_max_kg_m3.max(density_kg_m3);
+                widen([&mut space.density_min_kg_m3, &mut space.density_max_kg_m3], density_kg_m3);
             }
             return;
         }
@@ -176,7 +171,6 @@ impl BodyGenes {
                 limits.push(limit);
             }
         }
-        space.density_min_kg_m3 = space.density_min_kg_m3.min(self.density_kg_m3);
-        space.density_max_kg_m3 = space.density_max_kg_m3.max(self.density_kg_m3);
+        widen([&mut space.density_min_kg_m3, &mut space.density_max_kg_m3], self.density_kg_m3);
     }
 }

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::body::BodyGenes;
 use super::chain::Segment;
-use super::gene::{GeneRange, Genes, GenomeShape};
+use super::gene::{GeneRange, Genes, GenomeShape, coordinate_count};
 use super::individual::Genome;
 use super::space::GenomeSpace;
 
@@ -47,21 +47,12 @@ impl GenomeSpace {
 
     /// Counts the coordinates of a genome: one per gene whose range has more than one value.
     pub fn dimension(&self, shape: GenomeShape) -> usize {
-        let mut count = 0;
-        self.search_genes(self.zeroed(shape), |_, _| count += 1);
-        count
+        coordinate_count(|genes| self.zeroed(shape).genes(self, genes))
     }
 
     /// Counts the coordinates that belong to the body. They come before those of the controller.
     pub fn body_dimension(&self, shape: GenomeShape) -> usize {
-        let mut count = 0;
-        self.zeroed(shape).body.genes(
-            self,
-            &mut Genes::to(&mut |gene, _| {
-                count += usize::from(!gene.range.is_point());
-            }),
-        );
-        count
+        coordinate_count(|genes| self.zeroed(shape).body.genes(self, genes))
     }
 
     /// Describes the genes with a coordinate, in the order of the coordinates.

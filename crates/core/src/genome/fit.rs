@@ -12,10 +12,6 @@ fn same(field: &str, found: impl ToString, expected: impl ToString) -> Result<()
     if found == expected { Ok(()) } else { Err(Invalid::new(field, found, expected)) }
 }
 
-fn volume_m3(segments: &[Segment]) -> f64 {
-    segments.iter().map(Segment::volume_m3).sum()
-}
-
 impl GenomeSpace {
     /// Checks that this space could have produced a genome: its kind of controller, its layout, and every gene.
     ///
@@ -53,11 +49,8 @@ impl GenomeSpace {
             // The layout of a creature's genome follows from its own graph.
             let mut found = Vec::new();
             genome.controller.encoding().lengths(&mut |_, length, _| found.push(length));
-            return same(
-                "nodes with neurons",
-                found.first().unwrap_or(&0),
-                genome.body.nodes.len(),
-            );
+            let of_neurons = found.first().unwrap_or(&0);
+            return same("nodes with neurons", of_neurons, genome.body.nodes.len());
         }
         let mut expected = Vec::new();
         let zeroed = self.zeroed(shape);
@@ -89,7 +82,8 @@ impl GenomeSpace {
             return Ok(shape);
         }
         if !self.bodies.is_within_limits(segments) {
-            let value = format!("{} blocks of {:.3} m³", segments.len(), volume_m3(segments));
+            let found_m3: f64 = segments.iter().map(Segment::volume_m3).sum();
+            let value = format!("{} blocks of {found_m3:.3} m³", segments.len());
             let BodySpace { limbs_min, limbs_max, volume_m3, .. } = self.bodies;
             let allowed = format!(
                 "{limbs_min} to {limbs_max} blocks of {volume_m3} m³ together, within all limits of genome.bodies"
@@ -109,11 +103,8 @@ impl GenomeSpace {
                 "{parts_min} to {parts_max} parts of {} m³ together that lie apart, within all limits of genome.bodies",
                 self.bodies.volume_m3
             );
-            return Err(Invalid::new(
-                "nodes",
-                format!("a graph of {} parts", grown.len()),
-                allowed,
-            ));
+            let found = format!("a graph of {} parts", grown.len());
+            return Err(Invalid::new("nodes", found, allowed));
         }
         Ok(GenomeShape { joints: grown.len() - 1, ..shape })
     }

@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f32::consts::TAU;
-use std::fmt::{Arguments, Display, Write};
+use std::fmt::{Arguments, Display};
 use std::ops::RangeInclusive;
 
 use crate::check::Invalid;
@@ -127,6 +127,18 @@ pub fn check_genes(
 /// Returns the first gene with a value beyond its limits.
 pub fn check_limits(genes: impl FnOnce(&mut Genes<'_>)) -> Result<(), Invalid> {
     check_genes(|gene| Some(gene.quantity.range()), genes)
+}
+
+/// Counts the visited genes whose range has more than one value: those with a coordinate.
+pub fn coordinate_count(genes: impl FnOnce(&mut Genes<'_>)) -> usize {
+    let mut count = 0;
+    genes(&mut Genes::to(&mut |gene, _| count += usize::from(!gene.range.is_point())));
+    count
+}
+
+/// Widens a range so that it contains a value.
+pub fn widen([least, most]: [&mut f32; 2], value: f32) {
+    (*least, *most) = (least.min(value), most.max(value));
 }
 
 /// A number of a genome that people can compare: a gene, or a summary of many genes.
@@ -308,11 +320,7 @@ impl GeneRange<'_> {
             Self::Between(least, most) | Self::Ratio(least, most) => format!("{least} to {most}"),
             Self::Turn => "an angle".to_owned(),
             Self::OneOf(values) => {
-                let mut text = String::from("one of");
-                for value in values {
-                    let _ = write!(text, " {value}");
-                }
-                text
+                values.iter().fold("one of".to_owned(), |text, value| format!("{text} {value}"))
             }
         }
     }
@@ -334,13 +342,10 @@ impl GeneRange<'_> {
                 // Rounding could move the value out of the range.
                 shifted.clamp(least, most)
             }
-            Self::Ratio(..) => {
+            Self::Ratio(..) | Self::Turn => {
                 let by = rng.random_range(-share / 2.0..=share / 2.0);
-                self.at((self.coordinate(value) + f64::from(by)).clamp(0.0, 1.0))
-            }
-            Self::Turn => {
-                let turn = rng.random_range(-share / 2.0..=share / 2.0);
-                self.at(self.coordinate(value) + f64::from(turn))
+                let moved = self.coordinate(value) + f64::from(by);
+                self.at(if self == Self::Turn { moved } else { moved.clamp(0.0, 1.0) })
             }
             Self::Fixed(_) | Self::OneOf(_) => value,
         }

@@ -97,18 +97,6 @@ setting_group! {
 }
 
 impl WaveSpace {
-    /// Widens the range of frequencies so that it contains this frequency, in Hz.
-    pub(super) fn widen_frequency(&mut self, frequency_hz: f32) {
-        self.frequency_min_hz = self.frequency_min_hz.min(frequency_hz);
-        self.frequency_max_hz = self.frequency_max_hz.max(frequency_hz);
-    }
-
-    /// Widens the range of the servo's stiffness so that it contains this stiffness, in N·m/rad.
-    pub(super) fn widen_stiffness(&mut self, stiffness_nm_per_rad: f32) {
-        self.stiffness_min_nm_per_rad = self.stiffness_min_nm_per_rad.min(stiffness_nm_per_rad);
-        self.stiffness_max_nm_per_rad = self.stiffness_max_nm_per_rad.max(stiffness_nm_per_rad);
-    }
-
     /// Visits the gene of a frequency.
     pub(super) fn frequency_gene(&self, frequency_hz: &mut f32, genes: &mut Genes<'_>) {
         let range = GeneRange::Between(self.frequency_min_hz, self.frequency_max_hz);

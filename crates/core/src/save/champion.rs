@@ -177,6 +177,19 @@ mod tests {
         Champion { genome, trial, evaluation, chosen_by: None, origin }
     }
 
+    fn result_of(suite: ExamSuite) -> SuiteResult {
+        SuiteResult {
+            suite,
+            trials: 5,
+            landed: 4,
+            disqualified: 0,
+            median_steps: 10.0,
+            kept: 0.7,
+            each: Vec::new(),
+            endings: Endings::default(),
+        }
+    }
+
     #[test]
     fn the_champions_of_the_program_are_written_with_the_bytes_that_they_have() {
         let content = |text: &str| -> String {
@@ -268,14 +281,9 @@ mod tests {
         fs::write(&path, format!("// My favourite.\n{text}")).expect("written");
         let loaded = load_champion(&path).expect("read");
         let result = SuiteResult {
-            suite: ExamSuite::StepRate,
-            trials: 5,
-            landed: 4,
-            disqualified: 0,
-            median_steps: 10.0,
-            kept: 0.7,
             each: vec![("120 Hz".to_owned(), 0.9), ("240 Hz".to_owned(), 0.7)],
             endings: Endings::of([Ending::CRASHED; 5].iter()),
+            ..result_of(ExamSuite::StepRate)
         };
         // The exam is stored twice, as when it is repeated.
         for _ in 0..2 {
@@ -302,27 +310,18 @@ mod tests {
         let text = fs::read_to_string(&path).expect("read");
         fs::write(&path, format!("// Mine.\n\n// For the lesson.\n{text}")).expect("written");
         let loaded = load_champion(&path).expect("read");
-        let of = |suite| SuiteResult {
-            suite,
-            trials: 5,
-            landed: 4,
-            disqualified: 0,
-            median_steps: 10.0,
-            kept: 0.7,
-            each: Vec::new(),
-            endings: Endings::default(),
-        };
         for suite in [ExamSuite::Shove, ExamSuite::Trials] {
-            store_exam(&path, &loaded, &[of(suite)]).expect("written");
+            store_exam(&path, &loaded, &[result_of(suite)]).expect("written");
         }
         let exam = load_champion(&path).expect("read").exam;
-        assert_eq!(exam, [of(ExamSuite::Trials), of(ExamSuite::Shove)]);
+        assert_eq!(exam, [result_of(ExamSuite::Trials), result_of(ExamSuite::Shove)]);
         let text = fs::read_to_string(&path).expect("read");
         assert!(text.starts_with("// Mine.\n\n// For the lesson.\n// A champion of"), "{text}");
         let mut other = champion();
         other.origin.seed += 1;
         store_champion(&path, &other, None).expect("renamed to this name meanwhile");
-        let error = store_exam(&path, &loaded, &[of(ExamSuite::Shove)]).expect_err("another one");
+        let shove = [result_of(ExamSuite::Shove)];
+        let error = store_exam(&path, &loaded, &shove).expect_err("another one");
         assert!(error.to_string().contains("the champion that was examined"), "{error}");
         assert_eq!(load_champion(&path).expect("kept").champion, other);
     }

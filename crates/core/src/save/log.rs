@@ -162,17 +162,10 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("log.jsonl");
         let mut log = Log::open(&path, 0).expect("opened");
-        let long = vec![0.123_456_78; 100_000];
-        let written =
-            (0..20).take_while(|_| log.append_lightly(&Long { long: long.clone() }).is_ok());
-        let written = written.count();
+        let long = serde_json::json!({ "long": vec![0.123_456_78; 100_000] });
+        let written = (0..20).take_while(|_| log.append_lightly(&long).is_ok()).count();
         assert!((5..20).contains(&written), "{written}");
         assert_eq!(read_log::<serde_json::Value>(&path).expect("read").len(), written);
-    }
-
-    #[derive(Serialize)]
-    struct Long {
-        long: Vec<f64>,
     }
 
     fn written(folder: &tempfile::TempDir) -> PathBuf {

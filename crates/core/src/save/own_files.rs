@@ -260,6 +260,7 @@ impl KnownFiles<Preset> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::save::library::fixtures::saves;
     use crate::save::{NamedStairs, load_preset, load_stairs};
 
     fn preset(name: &str) -> Preset {
@@ -268,12 +269,6 @@ mod tests {
 
     fn stairs(name: &str) -> NamedStairs {
         load_stairs("ramps").expect("built in").renamed(name)
-    }
-
-    fn saves() -> (tempfile::TempDir, SavesFolder) {
-        let folder = tempfile::tempdir().expect("a folder");
-        let saves = SavesFolder::find(Some(folder.path()));
-        (folder, saves)
     }
 
     fn is_read_back_and_never_overwritten<T: OwnKind + PartialEq + std::fmt::Debug>(own: &T) {

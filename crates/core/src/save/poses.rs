@@ -161,15 +161,11 @@ fn unpacked(bits: u32) -> Option<Rotation> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::GenomeSpace;
-    use crate::rng::{Purpose, stream};
     use crate::score::Trial;
 
     fn recording() -> Recording {
         let trial = Trial::default();
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
-        Recording::of(&genome, &trial)
+        Recording::of(&trial.random_genome(0), &trial)
     }
 
     #[test]

@@ -99,15 +99,13 @@ impl UnfinishedFolder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::save::files::names_in;
 
     #[test]
     fn a_folder_appears_only_when_it_is_complete_and_replaces_nothing() {
         let around = tempfile::tempdir().expect("a folder");
         let path = around.path().join("frames");
-        let names = || -> Vec<String> {
-            let entries = fs::read_dir(around.path()).expect("a folder");
-            entries.map(|of| of.expect("one").file_name().to_string_lossy().into_owned()).collect()
-        };
+        let names = || names_in(around.path());
         let folder = UnfinishedFolder::create(&path).expect("free");
         folder.store_picture("1.png", &Picture::new(2, 2)).expect("written");
         assert!(!path.exists());

@@ -117,10 +117,7 @@ impl ExamSuite {
 
     /// Returns whether the suite can test a genome. For instance, senses that a controller does not use cannot be switched off.
     pub fn concerns(self, genome: &Genome) -> bool {
-        match self {
-            Self::Lesion => genome.senses_surroundings(),
-            _ => true,
-        }
+        self != Self::Lesion || genome.senses_surroundings()
     }
 }
 
@@ -186,7 +183,7 @@ impl ExamEnd {
             steps: steps_of_end(&evaluation),
             way: way_of_end(&evaluation, rollout.stairs(), start_y_m),
             landed_s,
-            arrived_s: arrival.arrived_s(),
+            arrived_s: arrival.arrived_s,
             has_landed: evaluation.is_on_landing(rollout.stairs()),
             is_disqualified: evaluation.disqualified.is_some(),
             ending: rollout.ending(),
@@ -258,6 +255,10 @@ impl SuiteResult {
 
     /// Computes the result of a suite. `own` is the end of the champion's own trial, undisturbed and as long as the suite's trials; `ends`
     /// are the ends in the suite's conditions.
+    ///
+    /// In the suite with the other engine, `ends` has the starts in the champion's own engine, followed by the same starts in the other
+    /// engine. Counts and the median of steps are those of the other engine. `kept` is the median, over the starts, of the distance in the
+    /// other engine as a share of the distance in the own engine. Starts without a distance in the own engine do not count.
     pub fn of(
         suite: ExamSuite,
         own: &ExamEnd,
@@ -274,9 +275,8 @@ impl SuiteResult {
             ExamSuite::HeldOut => !end.is_disqualified && end.arrived_s.is_some(),
             _ => end.has_landed,
         };
-        if suite == ExamSuite::Engine {
-            return Self::between_engines(ends);
-        }
+        let own_trials = if suite == ExamSuite::Engine { ends.len() / 2 } else { 0 };
+        let (in_own_engine, ends) = ends.split_at(own_trials);
         let share = |end: &ExamEnd| if own.way > 0.0 { end.way / own.way } else { 0.0 };
         let each = match suite {
             ExamSuite::StepRate => {
@@ -296,6 +296,10 @@ impl SuiteResult {
         let shares = ends.iter().map(share);
         let kept = match suite {
             ExamSuite::StepRate => shares.fold(f32::MAX, f32::min),
+            ExamSuite::Engine => {
+                let starts = in_own_engine.iter().zip(ends).filter(|(own, _)| own.way > 0.0);
+                median(starts.map(|(own, other)| other.way / own.way).collect())
+            }
             _ => median(shares.collect()),
         };
         Self {
@@ -307,25 +311,6 @@ impl SuiteResult {
             kept,
             each,
             endings: Endings::of(ends.iter().map(|end| &end.ending)),
-        }
-    }
-
-    /// Computes the result of an exam in both engines. `ends` has the starts in the champion's own engine, followed by the same starts in
-    /// the other engine. Counts and the median of steps are those of the other engine. `kept` is the median, over the starts, of the
-    /// distance in the other engine as a share of the distance in the own engine. Starts without a distance in the own engine do not
-    /// count.
-    fn between_engines(ends: &[ExamEnd]) -> Self {
-        let (own, other) = ends.split_at(ends.len() / 2);
-        let shares = own.iter().zip(other).filter(|(own, _)| own.way > 0.0);
-        Self {
-            suite: ExamSuite::Engine,
-            trials: other.len() as u32,
-            landed: other.iter().filter(|end| end.has_landed).count() as u32,
-            disqualified: other.iter().filter(|end| end.is_disqualified).count() as u32,
-            median_steps: median(other.iter().map(|end| end.steps as f32).collect()),
-            kept: median(shares.map(|(own, other)| other.way / own.way).collect()),
-            each: Vec::new(),
-            endings: Endings::of(other.iter().map(|end| &end.ending)),
         }
     }
 

@@ -182,28 +182,17 @@ impl FinalState<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::way_up::tests::body;
     use super::*;
-    use crate::world::{PartPlan, Rotation, Vector};
+    use crate::world::{Rotation, Vector};
 
     #[test]
     fn each_fitness_follows_its_description() {
         let stairs = Stairs::default();
-        let limb = |length_m, mass_kg: f32| PartPlan {
-            limb: 0,
-            width_m: 1.0,
-            length_m,
-            height_m: 1.0,
-            density_kg_m3: mass_kg / length_m,
-        };
-        let body = BodyPlan {
-            parts: vec![limb(4.0, 1.0), limb(4.0, 1.0), limb(2.0, 2.0)],
-            joints: Vec::new(),
-            springs: Vec::new(),
-            contact_free_pairs: Vec::new(),
-            middle_part: 1,
-            angular_damping_per_s: 0.0,
-            holding_w_per_n2m2: 0.0,
-        };
+        let mut body = BodyPlan { middle_part: 1, ..body(&[4.0, 4.0, 2.0]) };
+        for (part, mass_kg) in body.parts.iter_mut().zip([1.0, 1.0, 2.0]) {
+            part.density_kg_m3 = mass_kg / part.length_m;
+        }
         let pose = |x, y, z| Pose::from_parts(Vector::new(x, y, z), Rotation::IDENTITY);
         let score = |fitness, x, z| {
             let poses = [pose(0.0, 10.0, 1.0), pose(x, 6.0, z), pose(0.0, 4.0, 1.0)];

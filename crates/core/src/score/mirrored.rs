@@ -8,8 +8,9 @@ use crate::world::{Disqualification, JointTorque, LimbState, Pose, Simulation, W
 
 /// A champion's controller that drives a snake in another engine.
 pub struct MirroredRollout {
-    plan: WorldPlan,
-    /// World that mirrors the state of the other engine, from which the senses are read.
+    /// Plan of the world that the other engine has to build.
+    pub plan: WorldPlan,
+    /// World that mirrors the state of the limbs at the start, or as it was last copied, from which the senses are read.
     world: Simulation,
     control: ControlLoop,
     torques: Vec<JointTorque>,
@@ -35,16 +36,6 @@ impl MirroredRollout {
             step: 0,
             disqualified: None,
         }
-    }
-
-    /// Returns the plan of the world that the other engine has to build.
-    pub fn plan(&self) -> &WorldPlan {
-        &self.plan
-    }
-
-    /// Returns the mirroring world, with the state of the limbs at the start or as it was last copied.
-    pub fn world(&self) -> &Simulation {
-        &self.world
     }
 
     /// Returns whether the trial's time is up or the snake is disqualified.
@@ -142,7 +133,7 @@ mod tests {
                 angular_velocity_rad_s: Vector::ZERO,
                 contact_n: None,
             };
-            let mut limbs: Vec<LimbState> = rollout.world().poses().map(at_rest).collect();
+            let mut limbs: Vec<LimbState> = rollout.world.poses().map(at_rest).collect();
             let tail = limbs.last_mut().expect("a snake has limbs");
             (tail.pose.translation.x, tail.pose.translation.y) = (x, y);
             rollout.take(&limbs);

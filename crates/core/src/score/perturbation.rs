@@ -1,56 +1,55 @@
 //! Random perturbations of a trial. They show whether a gait also works in slightly different conditions.
 
-use serde::{Deserialize, Serialize};
-
 use super::faults::{DriveFaults, SidePushes};
 use crate::check::{Invalid, within};
 use crate::genome::StairsGenome;
-use crate::schema::{check, is_default};
+use crate::schema::{check, is_default, setting_group};
 use crate::world::{PhysicsSettings, STEP_RATES_HZ, Shove, Stairs, WorldPlan};
 
-/// The deviation of one trial from the nominal one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Perturbation {
-    /// Factor on the friction of stairs and ground.
-    pub friction: f32,
-    /// Factor on the height of the steps.
-    pub rise: f32,
-    /// Factor on the density of the limbs.
-    pub density: f32,
-    /// Shift of the start towards the stairs, in metres.
-    pub ahead_m: f32,
-    /// Shift of the start along x, in metres.
-    pub aside_m: f32,
-    /// Turn of the snake at the start, in radians.
-    pub turn_rad: f32,
-    /// Factor on the depth of the steps.
-    pub tread: f32,
-    /// Factor on the number of physics steps per second.
-    pub step_rate: f32,
-    /// Shove during the trial; `None` for no shove.
-    pub shove: Option<Shove>,
-    /// Stairs that replace those of the trial; the factors apply to them, too. `None`: the stairs of the trial.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stairs: Option<StairsGenome>,
-    /// Factor on gravity.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
-    pub gravity: f32,
-    /// Least restitution of stairs and ground.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub bounce: f32,
-    /// Addition to the softness (CFM) of stairs and ground, in m/s per N.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub softness_m_s_per_n: f32,
-    /// Factor on the damping of the joints.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
-    pub joint_damping: f32,
-    /// Faults of the drives; `None` for none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub drives: Option<DriveFaults>,
-    /// Pushes from the side; `None` for none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pushes: Option<SidePushes>,
+setting_group! {
+    /// The deviation of one trial from the nominal one; by default, none.
+    #[derive(Copy)]
+    pub struct Perturbation {
+        /// Factor on the friction of stairs and ground.
+        friction: f32 = 1.0;
+        /// Factor on the height of the steps.
+        rise: f32 = 1.0;
+        /// Factor on the density of the limbs.
+        density: f32 = 1.0;
+        /// Shift of the start towards the stairs, in metres.
+        ahead_m: f32 = 0.0;
+        /// Shift of the start along x, in metres.
+        aside_m: f32 = 0.0;
+        /// Turn of the snake at the start, in radians.
+        turn_rad: f32 = 0.0;
+        /// Factor on the depth of the steps.
+        tread: f32 = 1.0;
+        /// Factor on the number of physics steps per second.
+        step_rate: f32 = 1.0;
+        /// Shove during the trial; `None` for no shove.
+        shove: Option<Shove> = None;
+        /// Stairs that replace those of the trial; the factors apply to them, too. `None`: the stairs of the trial.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        stairs: Option<StairsGenome> = None;
+        /// Factor on gravity.
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        gravity: f32 = 1.0;
+        /// Least restitution of stairs and ground.
+        #[serde(default, skip_serializing_if = "is_default")]
+        bounce: f32 = 0.0;
+        /// Addition to the softness (CFM) of stairs and ground, in m/s per N.
+        #[serde(default, skip_serializing_if = "is_default")]
+        softness_m_s_per_n: f32 = 0.0;
+        /// Factor on the damping of the joints.
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        joint_damping: f32 = 1.0;
+        /// Faults of the drives; `None` for none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        drives: Option<DriveFaults> = None;
+        /// Pushes from the side; `None` for none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pushes: Option<SidePushes> = None;
+    }
 }
 
 /// Returns the factor that changes nothing.
@@ -60,30 +59,6 @@ fn one() -> f32 {
 
 fn is_one(factor: &f32) -> bool {
     *factor == 1.0
-}
-
-/// The perturbation that changes nothing.
-impl Default for Perturbation {
-    fn default() -> Self {
-        Self {
-            friction: 1.0,
-            rise: 1.0,
-            density: 1.0,
-            ahead_m: 0.0,
-            aside_m: 0.0,
-            turn_rad: 0.0,
-            tread: 1.0,
-            step_rate: 1.0,
-            shove: None,
-            stairs: None,
-            gravity: 1.0,
-            bounce: 0.0,
-            softness_m_s_per_n: 0.0,
-            joint_damping: 1.0,
-            drives: None,
-            pushes: None,
-        }
-    }
 }
 
 impl Perturbation {
@@ -149,7 +124,6 @@ impl Perturbation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::GenomeSpace;
     use crate::rng::{Purpose, stream};
     use crate::schema::PerPart;
     use crate::score::{PerturbationRange, Rollout, StairsVariation, Trial};
@@ -164,8 +138,7 @@ mod tests {
             ..PerturbationRange::default()
         };
         let trial = Trial::default();
-        let genome = GenomeSpace::default()
-            .random_genome(trial.genome_shape(), &mut stream(1, 1, 0, Purpose::Birth));
+        let genome = trial.random_genome(0);
         let mut steps = BTreeSet::new();
         for number in 0..50 {
             let drawn = range.draw(10.0, 5, &mut stream(number, 0, 0, Purpose::Stairs));
@@ -185,9 +158,8 @@ mod tests {
 
     #[test]
     fn a_perturbed_world_has_its_own_steps_and_step_rate() {
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
         let trial = Trial::default();
-        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let genome = trial.random_genome(0);
         let mut plan = trial.world_plan(&genome);
         let off = Perturbation { tread: 0.9, step_rate: 2.0, rise: 1.1, ..Perturbation::default() };
         off.apply(&mut plan);
@@ -203,9 +175,8 @@ mod tests {
 
     #[test]
     fn a_shove_acts_from_its_moment_on() {
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
         let trial = Trial::default();
-        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let genome = trial.random_genome(0);
         let shove = Shove { limb: 2, at_s: 1.0, change_m_s: Vector::Z * 2.0 };
         let shoved = Perturbation { shove: Some(shove), ..Perturbation::default() };
         let mut plain = Rollout::new(&genome, &trial);

@@ -82,18 +82,11 @@ fn steps_between_frames(trial: &Trial, parts: usize) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::GenomeSpace;
-    use crate::rng::{Purpose, stream};
-
-    fn random_genome(trial: &Trial) -> Genome {
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
-        GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng)
-    }
 
     #[test]
     fn a_recording_follows_the_poses_of_the_rollout() {
         let trial = Trial { duration_s: 1.0, ..Trial::default() };
-        let genome = random_genome(&trial);
+        let genome = trial.random_genome(0);
         let recording = Recording::of(&genome, &trial);
         assert_eq!((recording.every_steps(), recording.frames().len()), (2, 31));
         let mut rollout = Rollout::new(&genome, &trial);

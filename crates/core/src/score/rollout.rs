@@ -327,7 +327,7 @@ impl Rollout {
     /// Returns the number of steps of the whole rollout, unless the agent is disqualified earlier.
     pub fn last_step(&self) -> u32 {
         // If the trial changes, the duration of the new trial counts.
-        self.change.as_ref().map_or(self.conditions.last_step, TrialChange::last_step)
+        self.change.as_ref().map_or(self.conditions.last_step, |change| change.to.last_step)
     }
 
     /// Returns the stairs of the present trial.
@@ -384,20 +384,14 @@ impl Rollout {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::{ControllerGenes, GenomeSpace};
-    use crate::rng::{Purpose, stream};
+    use crate::genome::ControllerGenes;
     use crate::score::evaluate;
-
-    fn random_genome(individual: u32, trial: &Trial) -> Genome {
-        let mut rng = stream(1, 1, individual, Purpose::Birth);
-        GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng)
-    }
 
     #[test]
     fn scoring_twice_gives_the_same_bits() {
         let trial = Trial::default();
         for individual in 0..5 {
-            let genome = random_genome(individual, &trial);
+            let genome = trial.random_genome(individual);
             assert_eq!(evaluate(&genome, &trial), evaluate(&genome, &trial));
         }
     }
@@ -405,7 +399,7 @@ mod tests {
     #[test]
     fn torques_from_outside_lead_to_the_same_evaluation() {
         let trial = Trial::default();
-        let genome = random_genome(2, &trial);
+        let genome = trial.random_genome(2);
         let (mut inside, mut outside) =
             (Rollout::new(&genome, &trial), Rollout::new(&genome, &trial));
         while inside.advance() {
@@ -420,15 +414,15 @@ mod tests {
     #[test]
     fn different_genomes_leave_different_traces() {
         let trial = Trial::default();
-        let first = evaluate(&random_genome(0, &trial), &trial);
-        let second = evaluate(&random_genome(1, &trial), &trial);
+        let first = evaluate(&trial.random_genome(0), &trial);
+        let second = evaluate(&trial.random_genome(1), &trial);
         assert_ne!(first.trace_hash, second.trace_hash);
     }
 
     #[test]
     fn without_torque_the_snake_stays_where_it_starts() {
         let trial = Trial::default();
-        let mut genome = random_genome(0, &trial);
+        let mut genome = trial.random_genome(0);
         let ControllerGenes::Signal(signals) = &mut genome.controller else { panic!("no signals") };
         signals.all_mut().for_each(|signal| signal.fill(0.0));
         let evaluation = evaluate(&genome, &trial);

@@ -244,7 +244,6 @@ pub fn evaluate(genome: &Genome, trial: &Trial) -> Evaluation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::GenomeSpace;
     use crate::rng::{Purpose, stream};
     use crate::score::PerturbationList;
     use crate::world::{PhysicsEngine, VectorLevel};
@@ -264,8 +263,7 @@ mod tests {
                 (trial.repeats.trials, trial.repeats.list) = (3, PerturbationList::Fixed);
                 trial.repeats.off.step_rate = 0.2;
             }
-            let mut rng = stream(1, 1, individual, Purpose::Birth);
-            (GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng), trial)
+            (trial.random_genome(individual), trial)
         };
         (0..30).map(job).collect()
     }

@@ -188,8 +188,9 @@ impl Trial {
             ground: self.ground().clone(),
             skin: self.agent.skin.clone(),
             health: self.health.clone(),
+            // A body from the genome starts with its front in the same place, whatever its length.
             start_y_m: if has_own_body {
-                self.own_start_y_m(body.length_m())
+                self.start_y_m + FRONT_M - body.length_m() / 2.0
             } else {
                 self.start_y_m
             },
@@ -239,11 +240,6 @@ impl Trial {
         }
     }
 
-    /// Returns the position on the y axis of the middle of a body from the genome at the start, in metres.
-    fn own_start_y_m(&self, length_m: f32) -> f32 {
-        self.start_y_m + FRONT_M - length_m / 2.0
-    }
-
     /// Describes where a snake ended: like [`Trial::meaning`], unless its behaviour shows that it lay beside or behind the stairs. For a
     /// record without a behaviour, only the position is described.
     pub fn result_in_words(&self, genome: &Genome, evaluation: &Evaluation) -> String {
@@ -266,10 +262,23 @@ pub(super) fn steps_in(duration_s: f32, physics: &PhysicsSettings) -> u32 {
 mod tests {
     use super::*;
     use crate::evolve::{Settings, with_fields};
-    use crate::genome::{GenomeShape, GenomeSpace};
+    use crate::genome::{ControllerKind, GenomeShape, GenomeSpace};
     use crate::rng::{Purpose, stream};
     use crate::score::evaluate;
     use crate::world::Disqualification;
+
+    impl Trial {
+        /// Returns the random genome with this number, which plays torque signals.
+        pub fn random_genome(&self, number: u32) -> Genome {
+            self.random_genome_of(ControllerKind::Signal, number)
+        }
+
+        /// Returns the random genome with this number and this kind of controller.
+        pub fn random_genome_of(&self, controller: ControllerKind, number: u32) -> Genome {
+            let space = GenomeSpace { controller, ..GenomeSpace::default() };
+            space.random_genome(self.genome_shape(), &mut stream(1, 1, number, Purpose::Birth))
+        }
+    }
 
     #[test]
     fn a_disqualified_snake_is_simulated_in_its_nominal_trial_alone() {

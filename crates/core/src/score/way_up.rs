@@ -21,7 +21,7 @@ pub(super) struct Arrival {
     /// Time since which the whole body has been on the landing, in s; `None` if it is not there.
     up_since_s: Option<f32>,
     /// Time at which the whole body had first been on the landing for `ARRIVAL_S`, in s; `None` if it never was.
-    arrived_s: Option<f32>,
+    pub arrived_s: Option<f32>,
 }
 
 impl Arrival {
@@ -33,11 +33,6 @@ impl Arrival {
         if stays && self.arrived_s.is_none() {
             self.arrived_s = Some(time_s);
         }
-    }
-
-    /// Returns the time at which the whole body had first been on the landing for `ARRIVAL_S`, in s; `None` if it never was.
-    pub fn arrived_s(&self) -> Option<f32> {
-        self.arrived_s
     }
 }
 

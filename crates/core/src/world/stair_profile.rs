@@ -13,7 +13,8 @@ pub struct StairProfile {
     /// Places where the flat parts of the treads begin.
     treads: Treads,
     mean_tread_m: f32,
-    half_width_m: f32,
+    /// Half the width of the stairs, in metres.
+    pub half_width_m: f32,
     end_y_m: f32,
     /// Height over the ground after each number of steps, from none to all, in metres.
     heights_m: Vec<f32>,
@@ -124,11 +125,6 @@ impl StairProfile {
             tread_m: self.mean_tread_m,
             is_on_landing: steps > 0 && steps + 1 == self.heights_m.len(),
         }
-    }
-
-    /// Returns half the width of the stairs, in metres.
-    pub fn half_width_m(&self) -> f32 {
-        self.half_width_m
     }
 
     /// Returns whether a point is within the width of the stairs and not behind their landing.

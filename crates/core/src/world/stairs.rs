@@ -394,15 +394,4 @@ mod tests {
         let error = crate::schema::check(&Stairs { steps: 4, ..stairs }).expect_err("a step more");
         assert!(error.to_string().starts_with("rise_m is "), "{error}");
     }
-
-    #[test]
-    fn ten_boxes_rise_by_half_a_metre_every_two_metres() {
-        let boxes = Stairs::default().boxes();
-        assert_eq!(boxes.len(), 10);
-        assert_eq!(boxes[0].min_m, [-2.5, 3.0, 0.0]);
-        assert_eq!(boxes[0].max_m, [2.5, 5.0, 0.5]);
-        assert_eq!(boxes[9].min_m[1], 21.0);
-        assert_eq!(boxes[9].max_m[2], 5.0);
-        assert_eq!(boxes[9].max_m[1], 37.0, "the landing belongs to the last step");
-    }
 }

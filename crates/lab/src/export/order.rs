@@ -1,12 +1,11 @@
 //! Orders of an export: champions, a format, and the file to write.
 
-use std::path::Path;
 use std::path::PathBuf;
 
 use super::facts::{Fact, facts};
 use super::format::ExportFormat;
 use super::mjcf::mjcf;
-use super::source::{ExportSource, ExportedChampion};
+use super::source::ExportSource;
 use super::urdf::urdf;
 use super::{ExportError, ExportProgress, gltf, page, table_file};
 use snakes_core::save::store_text;
@@ -15,7 +14,8 @@ use snakes_core::world::WorldPlan;
 /// An export to be carried out: champions, a format and a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportOrder {
-    source: ExportSource,
+    /// The champions, whose number is allowed in the format.
+    pub source: ExportSource,
     format: ExportFormat,
     path: PathBuf,
 }
@@ -36,26 +36,6 @@ impl ExportOrder {
             None => format.check_champions(found)?,
         }
         Ok(Self { source, format, path })
-    }
-
-    /// Returns the champions.
-    pub fn champions(&self) -> &[ExportedChampion] {
-        &self.source.champions
-    }
-
-    /// Returns the champions for changes.
-    pub fn champions_mut(&mut self) -> &mut [ExportedChampion] {
-        &mut self.source.champions
-    }
-
-    /// Returns the format.
-    pub fn format(&self) -> ExportFormat {
-        self.format
-    }
-
-    /// Returns the path of the file.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Writes the file, unless the format is a film.
@@ -83,7 +63,7 @@ impl ExportOrder {
         progress: &ExportProgress,
     ) -> Result<(), ExportError> {
         progress.reach(0.0)?;
-        self.champions().iter().try_for_each(|exported| {
+        self.source.champions.iter().try_for_each(|exported| {
             let champion = &exported.loaded.champion;
             let plan = champion.trial.world_plan(&champion.genome);
             let text = model(&exported.name, &plan, &facts(exported));

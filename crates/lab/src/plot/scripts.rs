@@ -128,7 +128,7 @@ impl<S: BackendTextStyle> BackendTextStyle for InAllScripts<'_, S> {
         let mut drawn = Ok(());
         for ShapedGlyph { font, glyph, scale, place } in line.glyphs {
             let glyph = glyph.with_scale_and_position(scale, place);
-            let Some(outline) = font.outlines().outline_glyph(glyph) else { continue };
+            let Some(outline) = font.outlines.outline_glyph(glyph) else { continue };
             let corner = outline.px_bounds().min;
             outline.draw(|x, y, coverage| {
                 let (x, y) = (at.0 + x as i32 + corner.x as i32, at.1 + y as i32 + corner.y as i32);
@@ -169,12 +169,12 @@ fn shaped(text: &str, height: f32) -> Option<ShapedLine> {
         return None;
     }
     // All fonts get the size of the embedded one, whose scale is the height from the lowest to the highest character.
-    let pixels_per_em = height * units_per_em(embedded) / embedded.outlines().height_unscaled();
+    let pixels_per_em = height * units_per_em(embedded) / embedded.outlines.height_unscaled();
     let mut line = ShapedLine { glyphs: Vec::new(), width: 0.0 };
     for (font, part) in parts {
         let shaped = font.shape(part);
         let pixels = pixels_per_em / units_per_em(font);
-        let scale = PxScale::from(font.outlines().height_unscaled() * pixels);
+        let scale = PxScale::from(font.outlines.height_unscaled() * pixels);
         for (info, position) in shaped.glyph_infos().iter().zip(shaped.glyph_positions()) {
             let aside = line.width + position.x_offset as f32 * pixels;
             let place = ab_glyph::point(aside, height / 2.0 - position.y_offset as f32 * pixels);
@@ -206,7 +206,7 @@ fn parts<'t>(text: &'t str, embedded: &'static SystemFont) -> Vec<(&'static Syst
 }
 
 fn units_per_em(font: &SystemFont) -> f32 {
-    font.outlines().units_per_em().unwrap_or(1000.0)
+    font.outlines.units_per_em().unwrap_or(1000.0)
 }
 
 /// The embedded font.

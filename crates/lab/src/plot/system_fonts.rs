@@ -17,7 +17,8 @@ pub struct SystemFont {
     pub bytes: &'static [u8],
     /// Index of the font in the file.
     pub index: u32,
-    outlines: FontRef<'static>,
+    /// The font as a list of outlines.
+    pub(super) outlines: FontRef<'static>,
     tables: harfrust::FontRef<'static>,
     shaping: harfrust::ShaperData,
 }
@@ -126,11 +127,6 @@ impl SystemFont {
         let outlines = FontRef::try_from_slice_and_index(bytes, index).ok()?;
         let shaping = harfrust::ShaperData::new(&tables);
         Some(Self { name, bytes, index, outlines, tables, shaping })
-    }
-
-    /// The font as a list of outlines.
-    pub(super) fn outlines(&self) -> &FontRef<'static> {
-        &self.outlines
     }
 
     /// Returns the glyphs of a text in one script, from left to right.

@@ -323,4 +323,4 @@ impl Experiment {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -139,7 +139,8 @@ pub struct JudgeResult {
 
 /// A judge at work in a separate Python process.
 pub struct Court {
-    judge: &'static Judge,
+    /// The judge.
+    pub judge: &'static Judge,
     process: PythonProcess,
 }
 
@@ -152,14 +153,9 @@ impl Court {
         Ok(Self { judge, process: PythonProcess::start(judge)? })
     }
 
-    /// Returns the judge.
-    pub fn judge(&self) -> &'static Judge {
-        self.judge
-    }
-
     /// Returns the version of the judge's package.
     pub fn version(&self) -> &str {
-        self.process.version()
+        &self.process.version
     }
 
     /// Simulates a champion in the suite's trials, with `evaluator` and in the other engine. `model` writes a world as MJCF.
@@ -201,7 +197,7 @@ impl Court {
         control: &RunControl,
     ) -> Result<ExamEnd, JudgeError> {
         let mut rollout = MirroredRollout::new(&champion.genome, condition);
-        let plan = rollout.plan();
+        let plan = &rollout.plan;
         let text =
             model(plan).map_err(|error| JudgeError::Failed(self.judge.title, error.to_string()))?;
         self.process.send(&Order::Model {

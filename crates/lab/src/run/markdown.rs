@@ -5,9 +5,10 @@ use snakes_core::check::printable;
 /// Formats rows of cells as a Markdown table, the first row as its head. The first `left` columns are aligned to the left, the
 /// others to the right. All cells of a column are padded to the same width, so that the source text is readable. A name in a cell can
 /// neither end the cell nor the row.
-pub fn markdown_table(rows: &[Vec<String>], left: usize) -> String {
+pub fn markdown_table(rows: impl IntoIterator<Item = Vec<String>>, left: usize) -> String {
     let in_cell = |text: &String| printable(text).replace('\\', "\\\\").replace('|', "\\|");
-    let rows: Vec<Vec<String>> = rows.iter().map(|row| row.iter().map(in_cell).collect()).collect();
+    let in_cells = |row: Vec<String>| row.iter().map(in_cell).collect();
+    let rows: Vec<Vec<String>> = rows.into_iter().map(in_cells).collect();
     let Some((head, body)) = rows.split_first() else { return String::new() };
     let width = |column: usize| {
         let widths = rows.iter().filter_map(|row| Some(row.get(column)?.chars().count()));
@@ -48,6 +49,6 @@ mod tests {
 | a b            | 1 |
 | \\\\u001b[31mred | 1 |
 ";
-        assert_eq!(markdown_table(&rows, 1), expected);
+        assert_eq!(markdown_table(rows, 1), expected);
     }
 }

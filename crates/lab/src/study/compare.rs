@@ -3,7 +3,7 @@
 use super::definition::Arm;
 use super::results::Results;
 use super::values::{ValueInfo, value};
-use crate::statistics::{PairedDifference, Superiority, holm};
+use crate::statistics::{PairedDifference, Share, holm, superiority};
 
 /// Comparison of an arm with its baseline by one value.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +19,7 @@ pub struct ArmComparison<'a> {
     /// Probability of the sign test, corrected for the number of comparisons by this value (Holm).
     pub corrected_p: f64,
     /// Probability that a run of the arm has a greater value than a run of the baseline. `None` unless both have runs.
-    pub superiority: Option<Superiority>,
+    pub superiority: Option<Share>,
 }
 
 /// Compares all arms with their baselines by each value in the study's `compare`.
@@ -43,7 +43,7 @@ pub fn comparisons<'a>(results: &Results<'a>) -> Vec<ArmComparison<'a>> {
                 value,
                 difference: PairedDifference::of(&pairs),
                 corrected_p: 1.0,
-                superiority: Superiority::of(&numbers(arm), &numbers(baseline)),
+                superiority: superiority(&numbers(arm), &numbers(baseline)),
             });
         }
         let corrected = holm(&of_value.iter().map(|of| of.difference.p).collect::<Vec<_>>());

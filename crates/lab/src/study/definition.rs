@@ -39,10 +39,8 @@ pub struct Study {
     #[serde(default = "default_seeds")]
     pub seeds: u64,
     /// Evaluations that a run may spend. `None` for the generations of the preset.
-    #[serde(default)]
     pub evaluations: Option<u32>,
     /// Stairs of all arms: a name, or the path of a file. `None` for the stairs of the presets.
-    #[serde(default)]
     pub stairs: Option<String>,
     /// Settings that all arms change.
     #[serde(default)]
@@ -51,13 +49,11 @@ pub struct Study {
     #[serde(default)]
     pub exam_length: bool,
     /// Strategies that are combined with controllers. Each pair that fits together is an arm.
-    #[serde(default)]
     pub methods: Option<Methods>,
     /// Arms besides those of `methods`.
     #[serde(default)]
     pub arms: Vec<Arm>,
     /// Name of the arm with which the others are compared. `None` for the first arm.
-    #[serde(default)]
     pub baseline: Option<String>,
     /// Suites of the exam for champions, given in files by their names.
     #[serde(default, deserialize_with = "suites_by_name")]
@@ -75,7 +71,6 @@ pub struct Study {
     #[serde(default)]
     pub references: BTreeMap<String, Vec<f64>>,
     /// Number of newborns whose motion is compared between the physics engines. `None` for no comparison.
-    #[serde(default)]
     pub newborns: Option<u32>,
     /// Whether the built-in champions are examined in the other physics engine.
     #[serde(default)]
@@ -90,13 +85,11 @@ pub struct Study {
 
 /// Strategies and controllers to be combined. An empty list stands for all.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 pub struct Methods {
     /// Strategies of the arms.
-    #[serde(default)]
     pub strategies: Vec<StrategyKind>,
     /// Controllers of the arms.
-    #[serde(default)]
     pub controllers: Vec<ControllerKind>,
 }
 
@@ -110,19 +103,15 @@ pub struct Arm {
     #[serde(default)]
     pub title: String,
     /// Preset of the arm; `None` for the preset of the study.
-    #[serde(default)]
     pub preset: Option<String>,
     /// Settings that the arm changes.
     #[serde(default)]
     pub settings: Changes,
     /// Evaluations that a run of the arm may spend; `None` for those of the study.
-    #[serde(default)]
     pub evaluations: Option<u32>,
     /// Factor on the evaluations of the study; `None` for 1.
-    #[serde(default)]
     pub evaluations_times: Option<u32>,
     /// Goal of a run, whose evaluations are counted; `None` for no goal.
-    #[serde(default)]
     pub goal: Option<Goal>,
     /// Whether a run ends with the generation that reaches the goal.
     #[serde(default)]
@@ -131,7 +120,6 @@ pub struct Arm {
     #[serde(default)]
     pub examined: Examined,
     /// Name of the arm with which this arm is compared; `None` for the baseline of the study.
-    #[serde(default)]
     pub baseline: Option<String>,
     /// Strategy and controller, if the arm belongs to the study's methods.
     #[serde(skip)]
@@ -171,16 +159,13 @@ pub struct Demand {
     /// The measure of an arm that the demand bounds.
     pub measure: Measure,
     /// Name of the arm with which an arm is compared; `None` for the baseline.
-    #[serde(default)]
     pub against: Option<String>,
     /// Whether the measure must not exceed the bounds, for measures that usually must reach them.
     #[serde(default)]
     pub at_most: bool,
     /// Bound that the measure must meet.
-    #[serde(default)]
     pub must: Option<f64>,
     /// Bound that is hard to meet, but realistic.
-    #[serde(default)]
     pub hard: Option<f64>,
 }
 

@@ -266,10 +266,10 @@ fn judge_champions(
                 else {
                     continue;
                 };
-                if !left_judges(study, run).contains(&court.judge()) {
+                if !left_judges(study, run).contains(&court.judge) {
                     continue;
                 }
-                say(&format!("{} of {}, seed {seed}", court.judge().title, arm.name));
+                say(&format!("{} of {}, seed {seed}", court.judge.title, arm.name));
                 let champion = load_champion(&path)?.champion;
                 let bar = bar_of(judge_trials().into(), "trials");
                 let work = || court.examine(&champion, &model, evaluator, control);

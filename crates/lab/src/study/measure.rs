@@ -13,7 +13,6 @@ pub enum Measure {
         /// Name of the value.
         of: String,
         /// Name of the value that is subtracted; `None` for none.
-        #[serde(default)]
         less: Option<String>,
     },
     /// Share of the runs in which each of these values reaches its minimum.
@@ -52,7 +51,6 @@ pub enum Measure {
         /// Name of the value, such as the successes of an exam.
         of: String,
         /// Name of the value with the number of trials; `None` for plain sums.
-        #[serde(default)]
         trials: Option<String>,
     },
     /// 1 if the interval of the share of successful trials lies above the interval of the baseline, otherwise 0.

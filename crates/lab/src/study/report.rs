@@ -15,7 +15,7 @@ const OF_GENERATIONS: &str = "generation_";
 pub fn tables(results: &Results<'_>) -> String {
     let study = results.study;
     let mut text = format!("{}\n\n", study.title);
-    text += &markdown_table(&overview(results), 1);
+    text += &markdown_table(overview(results), 1);
     text += &format!(
         "\nmedian [quartiles] over {} seeds from {}; –: none, or never\n",
         study.seeds, study.first_seed
@@ -23,19 +23,19 @@ pub fn tables(results: &Results<'_>) -> String {
     for arm in study.selected_arms() {
         let rows = generations(results, arm);
         if rows.len() > 1 {
-            text += &format!("\n{}\n\n{}", arm.title(), markdown_table(&rows, 0));
+            text += &format!("\n{}\n\n{}", arm.title(), markdown_table(rows, 0));
         }
     }
     let compared = comparisons(results);
     if !compared.is_empty() {
-        text += &format!("\n{}", markdown_table(&comparison_rows(&compared), 3));
+        text += &format!("\n{}", markdown_table(comparison_rows(&compared), 3));
         text += "\nhigher: seeds with a higher value than the baseline; p: sign test, and corrected by Holm's method; difference: \
                  median with its 95 % interval;\nA: chance that a run is higher than one of the baseline, with its 95 % interval\n";
     }
     text += &findings(results);
     let demands = demand_rows(results);
     if demands.len() > 1 {
-        text += &format!("\n{}", markdown_table(&demands, 6));
+        text += &format!("\n{}", markdown_table(demands, 6));
         text +=
             "\nmeasured: median [quartiles], or a count with the 95 % interval of its percentage\n";
     }
@@ -232,11 +232,10 @@ fn findings(results: &Results<'_>) -> String {
                 .map_or(["–", "–"].map(str::to_owned), |of| of.each_ref().map(words));
             vec![of.measure.to_owned(), a, b, percent(of.greatest_difference())]
         });
-        let rows: Vec<Vec<String>> = [head].into_iter().chain(rows).collect();
         let [healthy, all] = findings.healthy;
         text += &format!(
             "\n{}\nmedian [quartiles] of the {healthy} of {all} newborns that are healthy in both engines\n",
-            markdown_table(&rows, 1)
+            markdown_table([head].into_iter().chain(rows), 1)
         );
     }
     if !findings.built_in.is_empty() {
@@ -245,8 +244,7 @@ fn findings(results: &Results<'_>) -> String {
             .built_in
             .iter()
             .map(|(name, kept)| vec![name.clone(), percent(Some(f64::from(*kept)))]);
-        let rows: Vec<Vec<String>> = [head].into_iter().chain(rows).collect();
-        text += &format!("\n{}", markdown_table(&rows, 1));
+        text += &format!("\n{}", markdown_table([head].into_iter().chain(rows), 1));
     }
     text
 }
@@ -257,6 +255,5 @@ pub fn values_as_markdown() -> String {
     let row = |info: &ValueInfo| {
         vec![format!("`{}`", info.name), info.unit.to_owned(), info.about.clone()]
     };
-    let rows: Vec<Vec<String>> = [head].into_iter().chain(values().iter().map(row)).collect();
-    markdown_table(&rows, 3)
+    markdown_table([head].into_iter().chain(values().iter().map(row)), 3)
 }

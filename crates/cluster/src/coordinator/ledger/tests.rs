@@ -63,6 +63,14 @@ impl Room {
         }
     }
 
+    /// A room in which one call has this number of tasks, and then a worker named `a` with these threads is heard.
+    fn at_work(count: usize, threads: u32) -> Self {
+        let mut room = Self::new();
+        room.open(1, count);
+        room.hear("a", threads);
+        room
+    }
+
     fn act(&mut self, actions: Vec<LedgerAction>) {
         let mut actions: VecDeque<LedgerAction> = actions.into();
         while let Some(action) = actions.pop_front() {
@@ -84,19 +92,22 @@ impl Room {
         }
     }
 
-    fn hear(&mut self, worker: &str, threads: u32) {
-        let actions = self.ledger.on_notice(notice(worker, threads, PROOF), self.now);
+    /// Tells the ledger something, and does what it answers.
+    fn tell(&mut self, news: impl FnOnce(&mut Ledger, Instant) -> Vec<LedgerAction>) {
+        let actions = news(&mut self.ledger, self.now);
         self.act(actions);
+    }
+
+    fn hear(&mut self, worker: &str, threads: u32) {
+        self.tell(|ledger, now| ledger.on_notice(notice(worker, threads, PROOF), now));
     }
 
     fn open(&mut self, call: CallId, count: usize) {
-        let actions = self.ledger.open(call, TaskKind::Score, 7, tasks(count), self.now);
-        self.act(actions);
+        self.tell(|ledger, now| ledger.open(call, TaskKind::Score, 7, tasks(count), now));
     }
 
     fn answer(&mut self, results: ResultBatch) {
-        let actions = self.ledger.on_results(results, self.now);
-        self.act(actions);
+        self.tell(|ledger, now| ledger.on_results(results, now));
     }
 
     /// Answers all batches as this worker until nothing is left to publish.
@@ -108,8 +119,7 @@ impl Room {
 
     fn pass(&mut self, time: Duration) {
         self.now += time;
-        let actions = self.ledger.on_tick(self.now);
-        self.act(actions);
+        self.tell(Ledger::on_tick);
     }
 
     /// Returns the indices of the tasks that were delivered with the right outcome, in ascending order.
@@ -153,9 +163,7 @@ fn equal_tasks_are_computed_once_for_all_who_wait() {
 
 #[test]
 fn batches_take_half_a_second_and_become_small_towards_the_end() {
-    let mut room = Room::new();
-    room.open(1, 1000);
-    room.hear("a", 2);
+    let mut room = Room::at_work(1000, 2);
     assert_eq!(room.published[0].tasks.len(), 1, "the time is not known yet");
     let mut sizes = Vec::new();
     while let Some(batch) = room.published.pop() {
@@ -170,9 +178,7 @@ fn batches_take_half_a_second_and_become_small_towards_the_end() {
 
 #[test]
 fn results_count_after_one_of_them_was_checked_and_one_in_a_hundred_later() {
-    let mut room = Room::new();
-    room.open(1, 2000);
-    room.hear("a", 1);
+    let mut room = Room::at_work(2000, 1);
     let batch = room.published.remove(0);
     room.answer(results("a", &batch, right));
     assert_eq!((room.audits, room.delivered.len()), (1, 1));
@@ -202,9 +208,7 @@ fn a_liar_is_set_aside_before_its_results_count_and_they_are_computed_again() {
 
 #[test]
 fn a_worker_that_lies_later_is_found_and_taints_the_run() {
-    let mut room = Room::new();
-    room.open(1, 2000);
-    room.hear("a", 1);
+    let mut room = Room::at_work(2000, 1);
     let batch = room.published.remove(0);
     room.answer(results("a", &batch, right));
     room.work("a", wrong);
@@ -214,9 +218,7 @@ fn a_worker_that_lies_later_is_found_and_taints_the_run() {
 
 #[test]
 fn a_wrong_checker_is_found_as_well() {
-    let mut room = Room::new();
-    room.open(1, 4000);
-    room.hear("a", 1);
+    let mut room = Room::at_work(4000, 1);
     room.hear("b", 1);
     for worker in ["a", "b"] {
         let batch = room.published.remove(0);
@@ -244,12 +246,10 @@ fn a_wrong_checker_is_found_as_well() {
 
 #[test]
 fn a_result_that_cannot_be_read_sets_its_worker_aside() {
-    let mut room = Room::new();
-    room.open(1, 3);
-    room.hear("a", 1);
+    let mut room = Room::at_work(3, 1);
     room.work("a", |_| Outcome::Examined(snakes_core::score::ExamEnd::CRASHED));
     assert!(room.delivered.is_empty());
-    assert_eq!(room.ledger.staff().set_aside_names(), ["a"]);
+    assert_eq!(room.ledger.staff.set_aside_names(), ["a"]);
 }
 
 #[test]
@@ -258,8 +258,7 @@ fn a_worker_with_another_engine_gets_no_work_and_one_line() {
     room.open(1, 3);
     for _ in 0..2 {
         let other = notice("old", 4, "ffffffffffffffff");
-        let actions = room.ledger.on_notice(other, room.now);
-        room.act(actions);
+        room.tell(|ledger, now| ledger.on_notice(other, now));
     }
     assert!(room.published.is_empty());
     assert_eq!(room.said.len(), 1);
@@ -268,9 +267,7 @@ fn a_worker_with_another_engine_gets_no_work_and_one_line() {
 
 #[test]
 fn a_late_batch_is_repeated_when_workers_are_idle_and_a_lost_one_returns_to_the_queue() {
-    let mut room = Room::new();
-    room.open(1, 4);
-    room.hear("a", 4);
+    let mut room = Room::at_work(4, 4);
     let lost = room.published.remove(0);
     room.work("a", right);
     assert_eq!(room.right_indices(1).len(), 3);
@@ -291,12 +288,9 @@ fn a_late_batch_is_repeated_when_workers_are_idle_and_a_lost_one_returns_to_the_
 
 #[test]
 fn batches_that_the_server_has_lost_are_sent_again_at_once() {
-    let mut room = Room::new();
-    room.open(1, 20);
-    room.hear("a", 2);
+    let mut room = Room::at_work(20, 2);
     let lost: Vec<WorkBatch> = room.published.drain(..).collect();
-    let actions = room.ledger.on_store_lost(room.now);
-    room.act(actions);
+    room.tell(Ledger::on_store_lost);
     assert_eq!(
         room.said.last().expect("a line"),
         "the server has lost what it stored: 4 batches are sent again"
@@ -322,7 +316,7 @@ fn a_worker_that_falls_silent_is_told_once_unless_the_server_is_silent_too() {
         room.pass(SILENCE / 2);
         room.ledger.excuse_silence(room.now);
     }
-    assert_eq!(room.ledger.staff().workers(), 2);
+    assert_eq!(room.ledger.staff.workers(), 2);
     for _ in 0..8 {
         room.pass(SILENCE / 2);
         room.hear("stays", 1);
@@ -334,8 +328,7 @@ fn a_worker_that_falls_silent_is_told_once_unless_the_server_is_silent_too() {
     assert_eq!(room.said.last().expect("a line"), "worker dies on computer: 1 thread");
     // A worker that leaves is not reported as lost.
     let leaving = WorkerNotice { leaves: true, ..notice("dies", 1, PROOF) };
-    let actions = room.ledger.on_notice(leaving, room.now);
-    room.act(actions);
+    room.tell(|ledger, now| ledger.on_notice(leaving, now));
     let told = room.said.len();
     room.pass(2 * SILENCE);
     assert_eq!(room.said.len(), told + 1, "only the other one: {:?}", room.said);
@@ -343,9 +336,7 @@ fn a_worker_that_falls_silent_is_told_once_unless_the_server_is_silent_too() {
 
 #[test]
 fn a_silent_worker_is_forgotten_and_what_is_held_of_it_is_computed_again() {
-    let mut room = Room::new();
-    room.open(1, 1);
-    room.hear("a", 1);
+    let mut room = Room::at_work(1, 1);
     let batch = room.published.remove(0);
     // The result of this worker arrives, but the check is never answered.
     let actions = room.ledger.on_results(results("a", &batch, right), room.now);
@@ -365,14 +356,12 @@ fn a_silent_worker_is_forgotten_and_what_is_held_of_it_is_computed_again() {
 #[test]
 fn a_call_that_holds_publishes_nothing_and_one_that_ends_is_forgotten() {
     let mut room = Room::new();
-    let actions = room.ledger.pause(1, true, room.now);
-    room.act(actions);
+    room.tell(|ledger, now| ledger.pause(1, true, now));
     room.hear("a", 1);
     room.open(1, 5);
     assert!(room.published.is_empty());
     assert_eq!(room.ledger.take_for_local(), None);
-    let actions = room.ledger.pause(1, false, room.now);
-    room.act(actions);
+    room.tell(|ledger, now| ledger.pause(1, false, now));
     assert_eq!(room.published.len(), 2);
     room.ledger.close(1);
     assert_eq!(room.ledger.pending(), 0);
@@ -409,27 +398,21 @@ fn the_coordinator_s_own_threads_take_tasks_from_the_end() {
     let (key, kind, shared, text) = room.ledger.take_for_local().expect("a task");
     assert_eq!((kind, shared, &*text), (TaskKind::Score, 7, "task 2"));
     let outcome = right(&TaskText { key, text });
-    let actions = room.ledger.deliver(key, outcome);
-    room.act(actions);
+    room.tell(|ledger, _| ledger.deliver(key, outcome));
     assert_eq!(room.right_indices(1), [2]);
 }
 
 #[test]
 fn a_batch_that_is_too_large_stays_for_the_caller() {
-    let mut room = Room::new();
-    room.open(1, 2);
-    room.hear("a", 1);
+    let mut room = Room::at_work(2, 1);
     let batch = room.published.remove(0);
-    let actions = room.ledger.on_too_large(&batch);
-    room.act(actions);
+    room.tell(|ledger, _| ledger.on_too_large(&batch));
     assert!(matches!(room.delivered[..], [(1, 0, Outcome::Refused(_))]), "{:?}", room.delivered);
 }
 
 #[test]
 fn f3_batches_give_way_while_a_worker_waits_to_store_its_results() {
-    let mut room = Room::new();
-    room.open(1, 4);
-    room.hear("a", 1);
+    let mut room = Room::at_work(4, 1);
     let published = std::mem::take(&mut room.published);
     assert!(!published.is_empty());
     let tell = |room: &mut Room, trouble: Option<&str>| {

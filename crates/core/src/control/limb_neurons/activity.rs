@@ -26,23 +26,15 @@ impl LimbNeuronController {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::standing;
+    use super::super::tests::{random, standing};
     use super::*;
     use crate::control::Controller;
     use crate::genome::controllers::NeuronKind;
-    use crate::genome::{ControllerGenes, ControllerKind, GenomeSpace};
-    use crate::rng::{Purpose, stream};
-    use crate::score::Trial;
     use crate::world::JointTorque;
 
     #[test]
     fn the_links_of_a_limb_carry_what_its_neurons_sum_up_in_the_next_step() {
-        let controller = ControllerKind::LimbNeurons;
-        let mut space = GenomeSpace { controller, ..GenomeSpace::default() };
-        space.network.limb_neurons_shared = false;
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = space.random_genome(Trial::default().genome_shape(), &mut rng);
-        let ControllerGenes::LimbNeurons(mut genes) = genome.controller else { panic!("neurons") };
+        let mut genes = random(false);
         genes.limbs[1][3].kind = NeuronKind::Off;
         let mut controller = LimbNeuronController::new(genes);
         assert_eq!(controller.activity(&Observation::default(), 0), None);

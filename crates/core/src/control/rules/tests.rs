@@ -5,15 +5,13 @@ use crate::control::perception::{JointSenses, LimbSenses};
 use crate::control::{ActiveSenses, ControlLoop};
 use crate::evolve::Champion;
 use crate::genome::controllers::RULE_SENSES;
-use crate::genome::{ControllerGenes, ControllerKind, Genome, GenomeSpace};
-use crate::rng::{Purpose, stream};
+use crate::genome::{ControllerGenes, ControllerKind, Genome};
 use crate::save::shipped_champion;
 use crate::score::{Rollout, Trial, evaluate};
 use crate::world::PhysicsSettings;
 
 fn genome(individual: u32, trial: &Trial) -> Genome {
-    let space = GenomeSpace { controller: ControllerKind::Rules, ..GenomeSpace::default() };
-    space.random_genome(trial.genome_shape(), &mut stream(1, 1, individual, Purpose::Birth))
+    trial.random_genome_of(ControllerKind::Rules, individual)
 }
 
 fn genes(genome: &Genome) -> RuleGenes {

@@ -1,6 +1,7 @@
 //! Axes of archives, and their division into cells.
 
 use super::descriptor::Descriptor;
+use crate::schema::Choices;
 
 /// How the values of an axis are divided into cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,10 +30,8 @@ pub struct ArchiveAxis {
 impl ArchiveAxis {
     /// Makes the axis of a descriptor.
     pub fn of(descriptor: Descriptor, cells: u32) -> Self {
-        let (least, most) = descriptor.range();
-        let scale =
-            if descriptor.is_logarithmic() { AxisScale::Logarithmic } else { AxisScale::Linear };
-        Self { label: descriptor.label(), range: [least, most], scale, cells }
+        let (scale, range) = descriptor.scale();
+        Self { label: descriptor.choice().title, range, scale, cells }
     }
 
     /// Makes the axis of a whole number, with a cell for each number.

@@ -1,7 +1,8 @@
 //! Descriptors: numbers that distinguish kinds of behaviour.
 
 use super::axis::ArchiveAxis;
-use crate::schema::{Choices, choices};
+use super::axis::AxisScale::{self, Linear, Logarithmic};
+use crate::schema::choices;
 use crate::score::Evaluation;
 
 choices! {
@@ -20,30 +21,20 @@ choices! {
 }
 
 impl Descriptor {
-    /// Returns the label of the descriptor's axis, with the unit.
-    pub fn label(self) -> &'static str {
-        self.choice().title
-    }
-
-    /// Returns the values at the two ends of the descriptor's axis. Values beyond the ends belong to the outermost cells.
-    pub fn range(self) -> (f64, f64) {
+    /// Returns how the descriptor's axis is divided, and the values at its two ends. Values beyond the ends belong to the outermost cells.
+    pub(super) fn scale(self) -> (AxisScale, [f64; 2]) {
         match self {
-            Self::BodyHeight => (0.3, 2.3),
-            Self::Sideways => (0.0, 2.5),
-            Self::EnergyPerMetre => (10.0, 10_000.0),
-            Self::CostOfTransport => (0.1, 100.0),
-            Self::ClimbingEfficiency => (0.0, 0.3),
-            Self::ContactDuty => (0.0, 1.0),
-            Self::Frequency => (0.0, 4.0),
+            Self::BodyHeight => (Linear, [0.3, 2.3]),
+            Self::Sideways => (Linear, [0.0, 2.5]),
+            Self::EnergyPerMetre => (Logarithmic, [10.0, 10_000.0]),
+            Self::CostOfTransport => (Logarithmic, [0.1, 100.0]),
+            Self::ClimbingEfficiency => (Linear, [0.0, 0.3]),
+            Self::ContactDuty => (Linear, [0.0, 1.0]),
+            Self::Frequency => (Linear, [0.0, 4.0]),
         }
     }
 
-    /// Returns whether the descriptor's axis is logarithmic.
-    pub fn is_logarithmic(self) -> bool {
-        matches!(self, Self::EnergyPerMetre | Self::CostOfTransport)
-    }
-
-    /// Returns the descriptor of an agent that started at `start_y_m`, in the unit of [`Self::label`]. None if the agent was not observed.
+    /// Returns the descriptor of an agent that started at `start_y_m`, in the unit of its title. None if the agent was not observed.
     /// Without progress, the energy per metre and the cost of transport are infinite.
     pub fn value(self, evaluation: &Evaluation, start_y_m: f32) -> Option<f64> {
         let behaviour = evaluation.behaviour?;

@@ -100,26 +100,13 @@ mod tests {
                     StrategyKind::Mcc => assert_eq!(asked.len(), 30, "no random genomes"),
                     _ => assert_eq!(asked.len(), random.len()),
                 }
-                if matches!(
-                    strategy,
-                    StrategyKind::BodyGa
-                        | StrategyKind::BodyNovelty
-                        | StrategyKind::BodyMapElites
-                        | StrategyKind::BodyPoet
-                        | StrategyKind::CreatureGa
-                ) {
+                if strategy.info().varies_bodies && strategy != StrategyKind::Islands {
                     assert_eq!(asked[0], genome, "{what}");
                     let fresh = asked[1..].iter().filter(|other| random.contains(other)).count();
                     assert_eq!(fresh, asked.len() / 2, "every second one");
                     continue;
                 }
-                if matches!(
-                    strategy,
-                    StrategyKind::CmaEs
-                        | StrategyKind::Islands
-                        | StrategyKind::Poet
-                        | StrategyKind::Mcc
-                ) {
+                if strategy.info().is_budget_driven {
                     assert_ne!(asked, random, "{what}");
                     continue;
                 }

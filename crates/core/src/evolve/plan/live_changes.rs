@@ -130,8 +130,7 @@ impl RunPlan {
                     Some(MutationRangeChange { generation, range_nm, before_nm: None });
             }
             "evolution.halving.mutation_decay" if *generation > 2 => {
-                let decay = settings.evolution.halving.mutation_decay;
-                self.change_decay(*generation, decay);
+                self.change_decay(*generation, settings.evolution.halving.mutation_decay);
             }
             _ => {}
         }
@@ -142,19 +141,13 @@ impl RunPlan {
 
     fn change_decay(&mut self, generation: u32, decay: f32) {
         let before_nm = match self.changes.range {
-            // The range was set for this generation, so only later generations have a decayed range.
-            Some(MutationRangeChange { generation: of, before_nm: None, .. })
-                if of == generation =>
-            {
-                return;
-            }
-            Some(MutationRangeChange { generation: of, before_nm, .. }) if of == generation => {
-                before_nm
-            }
+            Some(change) if change.generation == generation => change.before_nm,
             _ => Some(self.mutation_range_nm(generation - 1)),
         };
-        let range_nm = before_nm.unwrap_or_default() * decay;
-        self.changes.range = Some(MutationRangeChange { generation, range_nm, before_nm });
+        // A range that was set for this generation decays in later generations only.
+        if let Some(range_nm) = before_nm.map(|before_nm| before_nm * decay) {
+            self.changes.range = Some(MutationRangeChange { generation, range_nm, before_nm });
+        }
     }
 
     /// Returns the mutation range of the report's method in a generation, after all changes so far, in N·m.

@@ -55,9 +55,7 @@ impl Settings {
         }
         Ok(())
     }
-}
 
-impl Settings {
     /// Lets bodies evolve if the strategy varies bodies, and makes the search small enough for a test.
     pub fn suit_to_strategy(&mut self) {
         self.genome.bodies.vary = self.evolution.strategy.info().varies_bodies;

@@ -84,15 +84,12 @@ setting_group! {
 }
 
 impl MccSettings {
-    /// Returns the maximum number of evaluations in a generation of coevolution.
-    fn most_at_once(&self) -> u32 {
-        self.snake_children * self.stairs_queue + self.stairs_children * self.snake_queue
-    }
-
     /// Checks that a generation, and the snakes that are kept for the stairs of a run, fit into memory.
     pub(super) fn check_size(&self, size: &GenomeSize<'_>) -> Result<(), Invalid> {
         let field = "evolution.mcc.snake_queue";
-        size.check_count(field, self.most_at_once(), size.genes(), LARGEST_SAMPLE)?;
+        let at_once =
+            self.snake_children * self.stairs_queue + self.stairs_children * self.snake_queue;
+        size.check_count(field, at_once, size.genes(), LARGEST_SAMPLE)?;
         let kept = PoetSettings::MOST_STAIRS as u32 + self.snake_queue;
         size.check_count(field, kept, size.genes(), LARGEST_STATE_GENES)
     }

@@ -40,7 +40,7 @@ pub use strategy_kind::{StrategyInfo, StrategyKind};
 use serde::{Deserialize, Serialize};
 
 use crate::check::Invalid;
-use crate::genome::{BodySpace, GenomeSpace, LARGEST_GENOME_TORQUES};
+use crate::genome::{GenomeSpace, LARGEST_GENOME_TORQUES};
 use crate::schema::{self, SettingGroup, Walk};
 use crate::score::{AgentSettings, Trial};
 use crate::world::Stairs;
@@ -55,11 +55,6 @@ pub struct Settings {
     pub genome: GenomeSpace,
     /// Settings of the search.
     pub evolution: EvolutionSettings,
-}
-
-/// Returns whether the limbs of the snakes are soft.
-fn are_limbs_soft(bodies: &BodySpace, agent: &AgentSettings) -> bool {
-    if bodies.vary { bodies.soft } else { agent.youngs_modulus_pa.is_some() }
 }
 
 impl Settings {
@@ -87,7 +82,9 @@ impl SettingGroup for Settings {
         walk.meet(AgentSettings::SENSING, genome.senses_surroundings());
         walk.meet(AgentSettings::GIVEN_BODY, !genome.bodies.vary);
         walk.meet(AgentSettings::OWN_BODIES, genome.bodies.vary);
-        walk.meet(AgentSettings::SOFT_LIMBS, are_limbs_soft(&genome.bodies, &trial.agent));
+        let given_soft = trial.agent.youngs_modulus_pa.is_some();
+        let are_soft = if genome.bodies.vary { genome.bodies.soft } else { given_soft };
+        walk.meet(AgentSettings::SOFT_LIMBS, are_soft);
         walk.meet(Stairs::GIVEN, !strategy.info().evolves_stairs);
         walk.fixed(
             "Takes effect with the next run, because the fitness of earlier generations could not be compared.",

@@ -133,9 +133,7 @@ impl Settings {
         if fitness == Fitness::Share {
             return Ok(());
         }
-        let allowed = format!(
-            "share with evolution.strategy {strategy}, whose stairs have different lengths"
-        );
+        let allowed = format!("share {with}, whose stairs have different lengths");
         Err(Invalid::new("trial.fitness", fitness, allowed))
     }
 

@@ -30,7 +30,7 @@ fn senses_are_settings_of_controllers_that_have_them() {
 
 #[test]
 fn settings_without_effect_on_the_chosen_strategy_and_controller_are_marked() {
-    use crate::genome::ControllerKind::{Ctrnn, Gait, Rules};
+    use crate::genome::ControllerKind::{Ctrnn, Gait, Rules, Signal, Wave};
     use StrategyKind::{CmaEs, Ga, Novelty};
     let is_used = |strategy, controller, path: &str| {
         let mut settings = Settings::default();
@@ -45,14 +45,17 @@ fn settings_without_effect_on_the_chosen_strategy_and_controller_are_marked() {
     }
     assert!(is_used(Novelty, Rules, "evolution.ga.elites"));
     for (path, users) in [
-        ("genome.network.library_waves", [false, false, true]),
-        ("genome.network.ctrnn_weight_range", [false, true, false]),
-        ("genome.wave.harmonics", [true, false, true]),
-        ("genome.wave.angle_range_rad", [true, true, true]),
-        ("genome.points_per_s", [false; 3]),
-        ("genome.density_min_kg_m3", [true; 3]),
+        ("genome.network.library_waves", &[Rules][..]),
+        ("genome.network.ctrnn_weight_range", &[Ctrnn]),
+        ("genome.wave.harmonics", &[Gait, Rules, Wave]),
+        ("genome.wave.angle_range_rad", &[Gait, Ctrnn, Rules]),
+        ("genome.torque_range_nm", &[Signal, Wave]),
+        ("genome.points_per_s", &[Signal]),
+        ("genome.density_min_kg_m3", &[Gait, Ctrnn, Rules, Signal, Wave]),
     ] {
-        assert_eq!([Gait, Ctrnn, Rules].map(|kind| is_used(Ga, kind, path)), users, "{path}");
+        for kind in [Gait, Ctrnn, Rules, Signal, Wave] {
+            assert_eq!(is_used(Ga, kind, path), users.contains(&kind), "{path} of {kind}");
+        }
     }
 }
 

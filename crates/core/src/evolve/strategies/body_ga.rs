@@ -58,15 +58,11 @@ impl BodyGa {
             return self.search.founding(individual, step);
         }
         // At least one individual of a generation is a new genome.
-        if individual
-            < (self.settings.kept_best as usize).min(self.search.population - 1).min(count)
-        {
+        let elites = (self.settings.kept_best as usize).min(self.search.population - 1);
+        if individual < elites.min(count) {
             let BodyMember { genome, age } = members[individual].clone();
-            return Candidate::aged(
-                age.saturating_add(1),
-                genome,
-                self.pool.parents(individual, None),
-            );
+            let parents = self.pool.parents(individual, None);
+            return Candidate::aged(age.saturating_add(1), genome, parents);
         }
         let mut rng = self.search.stream(individual, Purpose::Mutation);
         let mut parent = || {
@@ -99,9 +95,7 @@ impl BodyGa {
             BodyProtection::Age => {
                 let elites = (self.settings.kept_best as usize).min(ranked.len());
                 let (best, others) = ranked.split_at(elites);
-                let mut order = best.to_vec();
-                order.extend(by_fronts(others, ages));
-                order
+                [best, by_fronts(others, ages).as_slice()].concat()
             }
         }
     }
@@ -222,8 +216,8 @@ impl Strategy for BodyGa {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{Settings, StrategyKind};
-    use crate::genome::ControllerKind;
+    use crate::evolve::StrategyKind;
+    use crate::evolve::strategies::fixtures::{advance, plan};
 
     #[test]
     fn a_younger_body_only_loses_against_one_that_is_better_and_no_older() {
@@ -235,28 +229,16 @@ mod tests {
     }
 
     fn ga(change: impl FnOnce(&mut BodyGaSettings)) -> BodyGa {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::BodyGa;
-        settings.evolution.population = 200;
-        settings.genome.bodies.vary = true;
-        settings.genome.controller = ControllerKind::Gait;
-        change(&mut settings.evolution.body_ga);
-        settings.check().expect("they go together");
-        BodyGa::begin(&RunPlan::new("test", 1, settings))
-    }
-
-    fn advance(ga: &mut BodyGa) {
-        let asked = ga.ask();
-        let fitness = |of: &Candidate| of.genome.body.segments.len() as f32;
-        let evaluations: Vec<Evaluation> =
-            asked.iter().map(|of| Evaluation::of_fitness(fitness(of))).collect();
-        ga.tell(&asked, &evaluations);
+        BodyGa::begin(&plan(StrategyKind::BodyGa, |settings| {
+            settings.evolution.population = 200;
+            change(&mut settings.evolution.body_ga);
+        }))
     }
 
     #[test]
     fn three_in_ten_children_have_another_structure_and_age_begins_again() {
         let mut ga = ga(|settings| settings.two_parents = 0.0);
-        advance(&mut ga);
+        advance(&mut ga, |of| of.genome.body.segments.len() as f32);
         let asked = ga.ask();
         let ids = |genome: &Genome| -> Vec<(u64, u32)> {
             let segments = genome.body.segments.iter();

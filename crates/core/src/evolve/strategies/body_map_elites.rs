@@ -130,25 +130,15 @@ impl Strategy for BodyMapElites {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{Settings, StrategyKind};
-    use crate::genome::ControllerKind;
+    use crate::evolve::StrategyKind;
+    use crate::evolve::strategies::fixtures;
 
     fn plan() -> RunPlan {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::BodyMapElites;
-        settings.evolution.population = 60;
-        settings.genome.bodies.vary = true;
-        settings.genome.controller = ControllerKind::Gait;
-        settings.check().expect("they go together");
-        RunPlan::new("test", 1, settings)
+        fixtures::plan(StrategyKind::BodyMapElites, |settings| settings.evolution.population = 60)
     }
 
     fn advance(search: &mut BodyMapElites) {
-        let asked = search.ask();
-        let fitness = |of: &Candidate| of.genome.body.segments[0].length_m;
-        let evaluations: Vec<Evaluation> =
-            asked.iter().map(|of| Evaluation::of_fitness(fitness(of))).collect();
-        search.tell(&asked, &evaluations);
+        fixtures::advance(search, |of| of.genome.body.segments[0].length_m);
     }
 
     #[test]

@@ -43,15 +43,15 @@ pub fn check_runs(
     dimension: usize,
 ) -> Result<(), Invalid> {
     runs.check()?;
-    check_point(runs.current().mean(), dimension)?;
-    if runs.parameters() != parameters {
+    check_point(&runs.current.mean, dimension)?;
+    if runs.parameters != *parameters {
         let value = "different from those of the run";
         return Err(Invalid::new("parameters", value, "the parameters of the run"));
     }
     let most = u64::from(parameters.population) << 9;
-    within("population", u64::from(runs.population()), 2..=most)?;
+    within("population", u64::from(runs.current.population), 2..=most)?;
     // Larger steps lead far outside the ranges of all genes.
-    within("step", runs.current().step(), 0.0..=1.0e6)
+    within("step", runs.current.step, 0.0..=1.0e6)
 }
 
 /// Returns the points of candidates in an order, best first, each with its value.
@@ -126,7 +126,7 @@ impl Strategy for CmaEs {
 
     fn ask(&self) -> Vec<Candidate> {
         match &self.runs {
-            Some(runs) => self.search.sampled(|random| runs.candidates(random)),
+            Some(runs) => self.search.sampled(|random| runs.current.candidates(random)),
             None => {
                 let point = |individual| self.search.random_genome_point(individual);
                 let random = |individual| self.search.candidate(point(individual), Parents::None);
@@ -137,11 +137,11 @@ impl Strategy for CmaEs {
 
     fn population(&self) -> usize {
         let random = self.settings.newborns.max(1) as usize;
-        self.runs.as_ref().map_or(random, |runs| runs.population() as usize)
+        self.runs.as_ref().map_or(random, |runs| runs.current.population as usize)
     }
 
     fn forget_values(&mut self) {
-        self.runs.iter_mut().for_each(RestartedCma::forget_values);
+        self.runs.iter_mut().for_each(|runs| runs.current.forget_values());
     }
 
     fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {

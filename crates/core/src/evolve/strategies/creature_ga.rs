@@ -169,17 +169,15 @@ impl Strategy for CreatureGa {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{Settings, StrategyKind};
+    use crate::evolve::StrategyKind;
+    use crate::evolve::strategies::fixtures;
     use crate::genome::{ControllerKind, grow};
 
-    fn ga() -> CreatureGa {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::CreatureGa;
-        settings.evolution.population = 60;
-        settings.genome.bodies.vary = true;
-        settings.genome.controller = ControllerKind::PartNeurons;
-        settings.check().expect("they go together");
-        CreatureGa::begin(&RunPlan::new("test", 1, settings))
+    fn plan(population: u32) -> RunPlan {
+        fixtures::plan(StrategyKind::CreatureGa, |settings| {
+            settings.evolution.population = population;
+            settings.genome.controller = ControllerKind::PartNeurons;
+        })
     }
 
     fn parts(genome: &Genome) -> usize {
@@ -198,7 +196,7 @@ mod tests {
 
     #[test]
     fn a_fifth_survives_and_the_population_follows_the_fitness() {
-        let mut ga = ga();
+        let mut ga = CreatureGa::begin(&plan(60));
         let first = advance(&mut ga);
         assert_eq!(ga.pool.members.len(), 12);
         let asked = ga.ask();
@@ -222,7 +220,7 @@ mod tests {
 
     #[test]
     fn disqualified_creatures_do_not_breed_beside_healthy_ones() {
-        let mut ga = ga();
+        let mut ga = CreatureGa::begin(&plan(60));
         let asked = ga.ask();
         let mut evaluations: Vec<Evaluation> =
             (0..60).map(|_| Evaluation::of_fitness(9.0)).collect();
@@ -235,12 +233,7 @@ mod tests {
 
     #[test]
     fn a_state_that_does_not_fit_is_refused() {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::CreatureGa;
-        settings.evolution.population = 20;
-        settings.genome.bodies.vary = true;
-        settings.genome.controller = ControllerKind::PartNeurons;
-        let plan = RunPlan::new("test", 1, settings);
+        let plan = plan(20);
         let mut ga = CreatureGa::begin(&plan);
         advance(&mut ga);
         CreatureGa::resume(&plan, 1, &ga.state()).expect("its own");

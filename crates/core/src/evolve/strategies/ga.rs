@@ -153,7 +153,7 @@ impl Ga {
             };
             *gene += child.step * deviate;
         }
-        self.search.after_mutation(&before, &mut child.point, rng);
+        self.search.space.after_mutation(&before, &mut child.point, self.search.shape, rng);
     }
 }
 

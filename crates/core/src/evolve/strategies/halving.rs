@@ -117,12 +117,13 @@ mod tests {
     use crate::genome::ControllerGenes;
     use crate::world::Disqualification;
 
-    fn small() -> Halving {
+    fn plan(parents: u32, mutation_range_nm: f32) -> RunPlan {
         let mut settings = Settings::default();
         settings.evolution.population = 8;
-        settings.evolution.halving.parents = 2;
+        settings.evolution.halving.parents = parents;
+        settings.evolution.halving.mutation_range_nm = mutation_range_nm;
         settings.trial.duration_s = 1.0;
-        Halving::begin(&RunPlan::new("test", 1, settings))
+        RunPlan::new("test", 1, settings)
     }
 
     /// Returns the largest difference between two genomes' torque points, in N·m.
@@ -138,7 +139,7 @@ mod tests {
 
     #[test]
     fn children_come_from_the_best_in_turn_within_the_halved_range() {
-        let mut halving = small();
+        let mut halving = Halving::begin(&plan(2, 100.0));
         let mut asked = halving.ask();
         for range_nm in [100.0, 50.0, 25.0] {
             let fitness =
@@ -157,12 +158,7 @@ mod tests {
 
     #[test]
     fn without_mutation_children_equal_their_parents_even_after_a_restart() {
-        let mut settings = Settings::default();
-        settings.evolution.population = 8;
-        settings.evolution.halving.parents = 3;
-        settings.evolution.halving.mutation_range_nm = 0.0;
-        settings.trial.duration_s = 1.0;
-        let plan = RunPlan::new("test", 1, settings);
+        let plan = plan(3, 0.0);
         let mut halving = Halving::begin(&plan);
         let parents = |of: &Halving| of.ask().iter().map(|of| of.parents).collect::<Vec<_>>();
         assert_eq!(parents(&halving), [Parents::None; 8]);
@@ -187,7 +183,7 @@ mod tests {
 
     #[test]
     fn random_genomes_follow_a_generation_without_a_healthy_agent() {
-        let mut halving = small();
+        let mut halving = Halving::begin(&plan(2, 100.0));
         let asked = halving.ask();
         let broken = Evaluation {
             disqualified: Some(Disqualification::JointBroke),

@@ -4,14 +4,13 @@
 //! Bodies with different numbers of blocks have different genes, so each covariance is learned for one number of blocks.
 
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 use super::cma::{CmaParameters, RestartedCma};
 use super::cma_es::{check_runs, covariance_shape, ranked_candidates};
 use crate::check::{Invalid, within};
 use crate::evolve::candidate::Candidate;
 use crate::evolve::parents::Parents;
-use crate::evolve::plan::{Founder, RunPlan};
+use crate::evolve::plan::RunPlan;
 use crate::evolve::settings::{IslandSettings, LARGEST_SAMPLE, RestartKind};
 use crate::evolve::strategy::{Strategy, StrategyState, full_ranking};
 use crate::genome::{GenomeShape, GenomeSpace};
@@ -89,8 +88,9 @@ impl Islands {
 
     /// Returns the number of candidates of an island in the next generation; 0 if the island is inactive.
     fn size(&self, island: &Island) -> usize {
-        let runs = island.runs.as_ref().map_or(self.settings.candidates, RestartedCma::population);
-        if island.is_active { runs as usize } else { 0 }
+        let runs = island.runs.as_ref();
+        let size = runs.map_or(self.settings.candidates, |runs| runs.current.population);
+        if island.is_active { size as usize } else { 0 }
     }
 
     /// Returns the candidates of an island, whose first individual has the index `first`.
@@ -103,7 +103,8 @@ impl Islands {
         let shape = self.shape(island);
         let (points, parents) = match &island.runs {
             Some(runs) => {
-                (runs.candidates(|index| stream(index, Purpose::Sample)), Parents::Distribution)
+                let sample = |index| stream(index, Purpose::Sample);
+                (runs.current.candidates(sample), Parents::Distribution)
             }
             None => {
                 let random = |index| {
@@ -122,20 +123,16 @@ impl Islands {
 
     /// Ends the present stage once each active island has had its evaluations: only the best islands stay active.
     fn end_stage(&mut self) {
-        let active = || self.islands.iter().filter(|island| island.is_active);
-        let (count, least) =
-            (active().count(), active().map(|island| island.evaluations).min().unwrap_or(0));
-        let stage = STAGES.into_iter().find(|(_, keep)| *keep < count);
+        let mut active: Vec<&mut Island> =
+            self.islands.iter_mut().filter(|island| island.is_active).collect();
+        let least = active.iter().map(|island| island.evaluations).min().unwrap_or(0);
+        let stage = STAGES.into_iter().find(|(_, keep)| *keep < active.len());
         let Some((_, keep)) = stage.filter(|(evaluations, _)| least >= *evaluations) else {
             return;
         };
-        let mut order: Vec<usize> =
-            (0..self.islands.len()).filter(|&index| self.islands[index].is_active).collect();
-        let best = |index: usize| self.islands[index].best.unwrap_or(f32::NEG_INFINITY);
-        order.sort_by(|&a, &b| best(b).total_cmp(&best(a)));
-        for &index in order.iter().skip(keep) {
-            self.islands[index].is_active = false;
-        }
+        let best = |island: &Island| island.best.unwrap_or(f32::NEG_INFINITY);
+        active.sort_by(|a, b| best(b).total_cmp(&best(a)));
+        active.into_iter().skip(keep).for_each(|island| island.is_active = false);
     }
 }
 
@@ -146,14 +143,11 @@ impl Strategy for Islands {
         let island =
             |limbs| Island { limbs, is_active: true, evaluations: 0, best: None, runs: None };
         let mut search = Self::with(plan, 0, limbs.map(island).collect());
-        if let Some(founder) = plan.founder.as_ref().map(|founder: &Arc<Founder>| founder.genome())
-        {
-            let own = search
-                .islands
-                .iter()
-                .position(|island| island.limbs as usize == founder.body.segments.len());
+        if let Some(founder) = &plan.founder {
+            let blocks = founder.genome().body.segments.len();
+            let own = search.islands.iter().position(|island| island.limbs as usize == blocks);
             if let Some(index) = own {
-                let mean = search.space.exact_point_of(founder);
+                let mean = search.space.exact_point_of(founder.genome());
                 search.islands[index].runs = search.start(&search.islands[index], mean);
             }
         }
@@ -177,7 +171,7 @@ impl Strategy for Islands {
             let Some(runs) = &island.runs else { continue };
             let dimension = search.space.dimension(search.shape(island));
             check_runs(runs, &search.parameters(island), dimension)?;
-            coordinates += dimension * runs.population() as usize;
+            coordinates += dimension * runs.current.population as usize;
             within("population · dimension", coordinates, 1..=LARGEST_SAMPLE)?;
         }
         Ok(search)
@@ -238,28 +232,18 @@ impl Strategy for Islands {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evolve::{Settings, StrategyKind};
+    use crate::evolve::StrategyKind;
+    use crate::evolve::strategies::fixtures;
     use crate::genome::ControllerKind;
 
     fn plan() -> RunPlan {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::Islands;
-        settings.genome.bodies.vary = true;
-        settings.genome.controller = ControllerKind::Gait;
-        settings.check().expect("they go together");
-        RunPlan::new("test", 1, settings)
+        fixtures::plan(StrategyKind::Islands, |_| ())
     }
 
     /// Advances the search by generations in which seven blocks are best, and other numbers worse the more they differ from seven.
     fn advance(search: &mut Islands, generations: u32) {
-        for _ in 0..generations {
-            let asked = search.ask();
-            assert_eq!(asked.len(), search.population());
-            let fitness = |of: &Candidate| -(of.genome.body.segments.len() as f32 - 7.0).abs();
-            let evaluations: Vec<Evaluation> =
-                asked.iter().map(|of| Evaluation::of_fitness(fitness(of))).collect();
-            search.tell(&asked, &evaluations);
-        }
+        let fitness = |of: &Candidate| -(of.genome.body.segments.len() as f32 - 7.0).abs();
+        (0..generations).for_each(|_| fixtures::advance(search, fitness));
     }
 
     fn active(search: &Islands) -> Vec<u32> {
@@ -291,7 +275,7 @@ mod tests {
         let island = search.islands.iter().find(|island| island.limbs == 7).expect("an island");
         let body = search.space.body_dimension(search.shape(island));
         let asked = search.candidates(island, 0);
-        let mean = island.runs.as_ref().expect("started").current().mean();
+        let mean = &island.runs.as_ref().expect("started").current.mean;
         let spread = |range: std::ops::Range<usize>| {
             let points = asked.iter().map(|of| &of.heritage.point);
             let offs = points.flat_map(|point| {

@@ -58,8 +58,7 @@ impl<L: Learned> Learning<L> {
 
 impl<L: Learned> Strategy for Learning<L> {
     fn begin(plan: &RunPlan) -> Self {
-        let of_founder = |genome: &Genome| L::of(&genome.controller);
-        let founded = plan.founder.as_ref().and_then(|founder| of_founder(founder.genome()));
+        let founded = plan.founder.as_ref().and_then(|of| L::of(&of.genome().controller));
         // If the knowledge of the founder does not fit, only the rest of its genome is used.
         let mut fitting = founded.filter(|learned| learned.check_fits(plan).is_ok());
         if let Some(learned) = &mut fitting {
@@ -138,6 +137,6 @@ mod tests {
             panic!("decisions")
         };
         let Policy::Xcs(rules) = &genes.policy else { panic!("rules") };
-        assert_eq!(rules.settings().learning_rate, 0.5);
+        assert_eq!(rules.settings.learning_rate, 0.5);
     }
 }

@@ -103,12 +103,12 @@ impl MapElites {
                 .iter()
                 .enumerate()
                 .map(|(rank, &index)| {
-                    let value = (share - rank) as f64 + f64::from(cma.iteration());
+                    let value = (share - rank) as f64 + f64::from(cma.iteration);
                     RankedCandidate { point: &candidates[index].heritage.point, value }
                 })
                 .collect();
             let is_fruitless = additions[..share].iter().all(|a| *a == Addition::None);
-            has_ended = cma.update(&ranked).is_err() || cma.stop().is_some() || is_fruitless;
+            has_ended = cma.update(&ranked).is_err() || cma.stop.is_some() || is_fruitless;
         }
         if has_ended {
             self.emitter = self.new_emitter();
@@ -153,14 +153,11 @@ impl Strategy for MapElites {
         search.archive.restore(elites)?;
         if let Some(emitter) = &emitter {
             emitter.check().map_err(|error| error.inside("emitter"))?;
-            search.search.check(emitter.mean())?;
-            for (field, step) in
-                [("emitter.step", emitter.step()), ("emitter.initial_step", emitter.initial_step())]
-            {
-                within(field, step, 0.0..=1.0e6)?;
-            }
+            search.search.check(&emitter.mean)?;
+            within("emitter.step", emitter.step, 0.0..=1.0e6)?;
+            within("emitter.initial_step", emitter.initial_step, 0.0..=1.0e6)?;
             let expected = search.emitter_population();
-            within("emitter.population", emitter.population() as usize, expected..=expected)?;
+            within("emitter.population", emitter.population as usize, expected..=expected)?;
         }
         search.emitter = emitter;
         Ok(search)
@@ -198,7 +195,7 @@ impl Strategy for MapElites {
                 generation: self.search.generation,
                 individual: index as u32,
                 // The point is folded into the unit cube, where lines between elites are short.
-                genes: self.search.folded(&candidate.heritage.point),
+                genes: self.search.space.wrapped(&candidate.heritage.point, self.search.shape),
             };
             self.archive.add(cell, elite)
         };
@@ -219,7 +216,7 @@ impl Strategy for MapElites {
         self.search.apply_settings(plan);
         let share = self.emitter_population();
         // An emitter with another population cannot learn from the present generation. A new emitter begins after the next.
-        self.emitter.take_if(|emitter| emitter.population() as usize != share);
+        self.emitter.take_if(|emitter| emitter.population as usize != share);
     }
 
     fn parent_pool(&self) -> Vec<IndividualId> {
@@ -267,9 +264,10 @@ mod tests {
         search.settings.line = 0.0;
         for child in search.ask() {
             let Parents::One(parent) = child.parents else { panic!("{:?}", child.parents) };
-            let point = search.search.folded(&search.search.point_of(&child.genome));
+            let Search { space, shape, .. } = &search.search;
+            let point = space.wrapped(&space.point_of(&child.genome), *shape);
             let elite = &asked[parent.individual as usize].genome;
-            let off = point.iter().zip(search.search.point_of(elite)).map(|(a, b)| (a - b).abs());
+            let off = point.iter().zip(space.point_of(elite)).map(|(a, b)| (a - b).abs());
             assert!(off.fold(0.0, f64::max) < 1.0e-4, "genes differ from those of the parent");
         }
     }

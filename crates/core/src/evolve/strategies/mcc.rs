@@ -200,14 +200,7 @@ impl<S: Strategy> Mcc<S> {
                 Some(MccRole::First) | None => {}
             }
         }
-        self.shorten_queues();
-    }
-
-    /// Removes the oldest members of queues that are too long.
-    fn shorten_queues(&mut self) {
-        let settings = self.settings();
-        let most = [settings.snake_queue, settings.stairs_queue].map(|most| most as usize);
-        self.progress.shorten(most);
+        self.progress.shorten(&self.plan.settings.evolution.mcc);
     }
 
     /// Adds a child of a snake to the queue, if it climbs stairs that still have uses. The entry counts for the least used of these stairs.
@@ -246,15 +239,13 @@ impl<S: Strategy> Mcc<S> {
         let MccRole::Stairs { snake, .. } = attempt.role else { return };
         let MccProgress { nodes, uses, snakes, rounds, .. } = &mut self.progress;
         nodes.push(StairsNode {
-            stairs: attempt.stairs,
             parent: Some(parent),
             born: *rounds,
-            archived: None,
             solved: Some(*rounds),
-            is_new_challenge: false,
             agent: snakes.get(snake as usize).cloned(),
             score: evaluation.fitness,
             trials: tried.len() as u64,
+            ..StairsNode::new(attempt.stairs)
         });
         uses.push(0);
     }
@@ -278,15 +269,22 @@ impl<S: Strategy> Strategy for Mcc<S> {
     fn begin(plan: &RunPlan) -> Self {
         let evolution = &plan.settings.evolution;
         let stairs = StairsGenome::like(&plan.settings.trial.stairs, evolution.mcc.start_rise_m);
-        let root = StairsNode::root(stairs);
-        Self::with(plan, 0, MccProgress::begin(root, FirstSearch::new(plan, 0)))
+        let progress = MccProgress {
+            beginning: Some(FirstSearch::new(plan, 0)),
+            rounds: 0,
+            nodes: vec![StairsNode::new(stairs)],
+            uses: vec![0],
+            snakes: Vec::new(),
+            snake_turn: 0,
+            stairs_turn: 0,
+        };
+        Self::with(plan, 0, progress)
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
         let mut progress = MccProgress::read(state, plan, finished)?;
         // A change of settings may have reduced the maximum lengths of the queues.
-        let mcc = &plan.settings.evolution.mcc;
-        progress.shorten([mcc.snake_queue, mcc.stairs_queue].map(|most| most as usize));
+        progress.shorten(&plan.settings.evolution.mcc);
         Ok(Self::with(plan, finished, progress))
     }
 
@@ -317,7 +315,7 @@ impl<S: Strategy> Strategy for Mcc<S> {
         if let Some(beginning) = &mut self.progress.beginning {
             beginning.search.apply_settings(&FirstSearch::<S>::plan(plan, beginning.restarts));
         }
-        self.shorten_queues();
+        self.progress.shorten(&plan.settings.evolution.mcc);
         self.batch = self.next_batch();
     }
 

@@ -11,6 +11,8 @@ mod breeder;
 mod cma;
 mod cma_es;
 mod creature_ga;
+#[cfg(test)]
+mod fixtures;
 mod ga;
 mod halving;
 mod inner_search;

@@ -64,9 +64,9 @@ impl Strategy for Neat {
         population.check().map_err(|error| error.inside("state"))?;
         let search = Search::new(plan, finished);
         let size = search.population;
-        within("state.genomes", population.genomes().len(), size..=size)?;
+        within("state.genomes", population.genomes.len(), size..=size)?;
         let [inputs, outputs] = GrownGenes::ends(plan.settings.trial.agent.joints());
-        for network in population.genomes() {
+        for network in &population.genomes {
             within("state.genomes.inputs", network.inputs, inputs..=inputs)?;
             within("state.genomes.outputs", network.outputs, outputs..=outputs)?;
             let parameters = network.parameters.len();
@@ -82,12 +82,12 @@ impl Strategy for Neat {
             species: Some(species),
             ..Candidate::new(self.genome(network), Parents::None)
         };
-        let all = population.genomes().iter().zip(population.memberships());
+        let all = population.genomes.iter().zip(&population.memberships);
         self.search.with_founder_first(all.map(candidate).collect())
     }
 
     fn population(&self) -> usize {
-        self.population.as_ref().map_or(0, |population| population.genomes().len())
+        self.population.as_ref().map_or(0, |population| population.genomes.len())
     }
 
     fn tell(&mut self, _: &[Candidate], evaluations: &[Evaluation]) {

@@ -187,9 +187,10 @@ impl<B: Breeder> Strategy for Novelty<B> {
 mod tests {
     use super::*;
     use crate::evolve::strategies::body_ga::BodyGa;
+    use crate::evolve::strategies::fixtures;
     use crate::evolve::strategies::ga::Ga;
     use crate::evolve::{BodyProtection, Settings, StrategyKind};
-    use crate::genome::{ControllerKind, Genome};
+    use crate::genome::Genome;
     use crate::score::Behaviour;
 
     fn evaluation(centre_y_m: f32, contact_duty: f32) -> Evaluation {
@@ -239,16 +240,12 @@ mod tests {
 
     #[test]
     fn a_body_like_no_other_is_the_most_novel_among_equal_behaviours() {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::BodyNovelty;
-        settings.evolution.population = 40;
-        settings.evolution.novelty.weight = 1.0;
-        settings.evolution.novelty.neighbours = 5;
-        settings.evolution.body_ga.protection = BodyProtection::None;
-        settings.genome.bodies.vary = true;
-        settings.genome.controller = ControllerKind::Gait;
-        settings.check().expect("they go together");
-        let plan = RunPlan::new("test", 1, settings);
+        let plan = fixtures::plan(StrategyKind::BodyNovelty, |settings| {
+            settings.evolution.population = 40;
+            settings.evolution.novelty.weight = 1.0;
+            settings.evolution.novelty.neighbours = 5;
+            settings.evolution.body_ga.protection = BodyProtection::None;
+        });
         let mut search = Novelty::<BodyGa>::begin(&plan);
         let mut asked = search.ask();
         let blocks = |of: &Candidate| of.genome.body.segments.len();

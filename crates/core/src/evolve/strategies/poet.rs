@@ -72,28 +72,6 @@ impl<S: Strategy> Poet<S> {
         if evaluation.disqualified.is_some() { 0.0 } else { evaluation.fitness.max(0.0) }
     }
 
-    /// Processes the evaluations of the present phase, in the order of its candidates, and begins the next phase.
-    fn take(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
-        let scores: Vec<f32> = evaluations.iter().map(Self::score).collect();
-        let attempts = std::mem::take(&mut self.batch);
-        for attempt in &attempts {
-            if let Some(node) = attempt.role.node.and_then(|node| self.progress.node_mut(node)) {
-                let trials = u64::from(attempt.perturbed) + 1;
-                node.trials = node.trials.saturating_add(trials);
-            }
-        }
-        let phase = std::mem::replace(&mut self.progress.phase, Phase::Measure);
-        self.progress.phase = match phase {
-            Phase::Learn { left } => self.after_learning(left, candidates, evaluations),
-            Phase::Measure => self.after_measurement(&attempts, &scores),
-            Phase::Tune { proposals } => self.after_tuning(proposals, &attempts, &scores),
-            Phase::Confirm { tuned } => self.after_confirmation(tuned, &scores),
-            Phase::Breed { children } => self.after_breeding(children, &scores),
-            Phase::Compare { children } => self.after_comparison(&children, &scores),
-            Phase::Place { first } => self.after_placing(first, &scores),
-        };
-    }
-
     fn after_learning(
         &mut self,
         left: u32,
@@ -297,10 +275,20 @@ impl<S: Strategy> Strategy for Poet<S> {
         let founder = plan.founder.as_ref().map(|founder| founder.genome());
         let agent =
             founder.map(|genome| Agent { genome: genome.clone(), generation: 0, individual: 0 });
-        let root = StairsNode { agent, ..StairsNode::root(Self::root(plan)) };
+        let root = StairsNode { agent, ..StairsNode::new(Self::root(plan)) };
         let search = S::begin(&search_plan(plan, 0, 0, founder));
         let left = plan.settings.evolution.poet.learn_generations;
-        Self::with(plan, 0, PoetProgress::begin(root, Pair::new(0, search), left))
+        let progress = PoetProgress {
+            phase: Phase::Learn { left },
+            rounds: 0,
+            transfers_done: 0,
+            nodes: vec![root],
+            pairs: vec![Pair::new(0, search)],
+            panel: Vec::new(),
+            rows: vec![Vec::new()],
+            transfers: Vec::new(),
+        };
+        Self::with(plan, 0, progress)
     }
 
     fn resume(plan: &RunPlan, finished: u32, state: &StrategyState) -> Result<Self, Invalid> {
@@ -316,8 +304,26 @@ impl<S: Strategy> Strategy for Poet<S> {
         self.batch.len()
     }
 
+    /// Processes the evaluations of the present phase, in the order of its candidates, and begins the next phase.
     fn tell(&mut self, candidates: &[Candidate], evaluations: &[Evaluation]) {
-        self.take(candidates, evaluations);
+        let scores: Vec<f32> = evaluations.iter().map(Self::score).collect();
+        let attempts = std::mem::take(&mut self.batch);
+        for attempt in &attempts {
+            if let Some(node) = attempt.role.node.and_then(|node| self.progress.node_mut(node)) {
+                let trials = u64::from(attempt.perturbed) + 1;
+                node.trials = node.trials.saturating_add(trials);
+            }
+        }
+        let phase = std::mem::replace(&mut self.progress.phase, Phase::Measure);
+        self.progress.phase = match phase {
+            Phase::Learn { left } => self.after_learning(left, candidates, evaluations),
+            Phase::Measure => self.after_measurement(&attempts, &scores),
+            Phase::Tune { proposals } => self.after_tuning(proposals, &attempts, &scores),
+            Phase::Confirm { tuned } => self.after_confirmation(tuned, &scores),
+            Phase::Breed { children } => self.after_breeding(children, &scores),
+            Phase::Compare { children } => self.after_comparison(&children, &scores),
+            Phase::Place { first } => self.after_placing(first, &scores),
+        };
         self.generation += 1;
         self.batch = self.next_batch();
     }

@@ -16,7 +16,8 @@ use crate::rng::{Purpose, normal, stream};
 pub struct Search {
     /// Space of the genomes that the strategy may make.
     pub space: GenomeSpace,
-    shape: GenomeShape,
+    /// Layout of the genomes where bodies do not evolve.
+    pub shape: GenomeShape,
     /// Seed of the run.
     pub seed: u64,
     /// Number of the next generation; the first is 1.
@@ -100,12 +101,6 @@ impl Search {
         self.space.genome_at(point, self.shape)
     }
 
-    /// Returns the point of a genome.
-    #[cfg(test)]
-    pub fn point_of(&self, genome: &Genome) -> Vec<f64> {
-        self.space.point_of(genome)
-    }
-
     /// Makes the candidate at a point.
     pub fn candidate(&self, point: Vec<f64>, parents: Parents) -> Candidate {
         let genome = self.genome(&point);
@@ -120,16 +115,6 @@ impl Search {
         let points = draw(&|index| self.stream(index as usize, Purpose::Sample));
         let candidate = |point| self.candidate(point, Parents::Distribution);
         points.into_iter().map(candidate).collect()
-    }
-
-    /// Returns the point of the unit cube with the same genome as `point`, which may lie outside.
-    pub fn folded(&self, point: &[f64]) -> Vec<f64> {
-        self.space.wrapped(point, self.shape)
-    }
-
-    /// Applies the rules of the controller's kind to `point`, which has been mutated from `before`.
-    pub fn after_mutation(&self, before: &[f64], point: &mut [f64], rng: &mut ChaCha8Rng) {
-        self.space.after_mutation(before, point, self.shape, rng);
     }
 
     /// Draws the random genome of an individual.

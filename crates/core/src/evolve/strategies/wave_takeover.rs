@@ -82,24 +82,24 @@ impl WaveTakeover {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evolve::StrategyKind;
     use crate::evolve::strategies::breeder::Breeder;
+    use crate::evolve::strategies::fixtures;
     use crate::evolve::strategies::ga::Ga;
     use crate::evolve::strategy::Strategy;
-    use crate::evolve::{Settings, StrategyKind};
     use crate::genome::ControllerKind;
     use crate::rng::{Purpose, stream};
     use crate::score::Behaviour;
 
     fn plan(controller: ControllerKind, wave_takeover: f32) -> RunPlan {
-        let mut settings = Settings::default();
-        settings.evolution.strategy = StrategyKind::Ga;
-        settings.evolution.population = 100;
-        settings.genome.controller = controller;
-        settings.evolution.ga.wave_takeover = wave_takeover;
-        // Without crossover, and with the smallest step, children differ from their parents by hardly more than the wave.
-        settings.evolution.ga.crossover_share = 0.0;
-        settings.evolution.ga.step = 1.0e-4;
-        RunPlan::new("test", 1, settings)
+        fixtures::plan(StrategyKind::Ga, |settings| {
+            settings.evolution.population = 100;
+            settings.genome.controller = controller;
+            settings.evolution.ga.wave_takeover = wave_takeover;
+            // Without crossover, and with the smallest step, children differ from their parents by hardly more than the wave.
+            settings.evolution.ga.crossover_share = 0.0;
+            settings.evolution.ga.step = 1.0e-4;
+        })
     }
 
     fn uses(counts: [u32; 4]) -> WaveUses {

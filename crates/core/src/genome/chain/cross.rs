@@ -39,17 +39,14 @@ impl GenomeSpace {
         }
         if let (ControllerGenes::Gait(gait), ControllerGenes::Gait(from)) =
             (&mut child.controller, &other.controller)
-            && of_other()
         {
-            gait.stiffness_nm_per_rad = from.stiffness_nm_per_rad;
-        }
-        // Gaits without steering take no random number, as before there was steering.
-        if let (ControllerGenes::Gait(gait), ControllerGenes::Gait(from)) =
-            (&mut child.controller, &other.controller)
-            && (gait.steering.is_used() || from.steering.is_used())
-            && of_other()
-        {
-            gait.steering = from.steering;
+            if of_other() {
+                gait.stiffness_nm_per_rad = from.stiffness_nm_per_rad;
+            }
+            // Gaits without steering take no random number, as before there was steering.
+            if (gait.steering.is_used() || from.steering.is_used()) && of_other() {
+                gait.steering = from.steering;
+            }
         }
         if let (Some(waves), Some(from)) =
             (waves_mut(&mut child.controller), waves_mut(&mut other.controller))

@@ -2,7 +2,7 @@
 
 use super::segment::Segment;
 use super::space::BodySpace;
-use crate::genome::gene::{GeneRange, Genes};
+use crate::genome::gene::{GeneRange, Genes, widen};
 use crate::genome::limits::{DENSITY, LIMIT, MODULUS, SHARE, SIZE};
 use crate::genome::space::GenomeSpace;
 use crate::world::{STIFFEST_M4_S2, modulus_at_pa};
@@ -114,9 +114,4 @@ impl BodySpace {
         widen([&mut self.twist_limit_min_rad, &mut self.twist_limit_max_rad], twist);
         self.strength_min = self.strength_min.min(strength);
     }
-}
-
-/// Widens a range so that it contains a value.
-fn widen([least, most]: [&mut f32; 2], value: f32) {
-    (*least, *most) = (least.min(value), most.max(value));
 }

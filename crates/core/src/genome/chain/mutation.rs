@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::segment::Segment;
 use super::space::BodySpace;
-use crate::genome::gene::GeneRange;
+use crate::genome::gene::{GeneRange, coordinate_count};
 use crate::genome::individual::Genome;
 use crate::genome::space::GenomeSpace;
 use crate::rng::normal;
@@ -38,8 +38,7 @@ impl GenomeSpace {
     /// their ranges. One gene in ten changes, but on average at least one (Sims 1994).
     pub fn with_small_changes(&self, parent: &Genome, step: f64, rng: &mut ChaCha8Rng) -> Genome {
         let mut child = parent.clone();
-        let mut count = 0_usize;
-        child.visit(self, |gene, _| count += usize::from(!gene.range.is_point()));
+        let count = coordinate_count(|genes| child.genes(self, genes));
         let share = LEAST_SHARE.max(1.0 / count.max(1) as f64);
         child.visit(self, |gene, value| {
             if gene.range.is_point() || rng.random_range(0.0..1.0) >= share {

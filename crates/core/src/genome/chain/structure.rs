@@ -9,22 +9,24 @@ use super::segment::Segment;
 use crate::genome::controllers::{ControllerGenes, JointWaves, Wave, Waves};
 use crate::genome::individual::Genome;
 use crate::genome::space::GenomeSpace;
+use crate::schema::named_values;
 
-/// A change of the structure of a body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BodyChange {
-    /// A block was copied. The copy lies behind it, and the copy's joint continues the rhythm of the neighbouring joints.
-    Duplicate,
-    /// A block was split into two halves, held straight: at first this makes hardly any difference.
-    Split,
-    /// A block was removed, with its joint.
-    Remove,
-    /// Two neighbouring blocks were merged: the inverse of a split.
-    Merge,
-    /// A block was inserted between two neighbours, as the mean of both.
-    Insert,
-    /// The sizes of a block changed a lot.
-    Resize,
+named_values! {
+    /// A change of the structure of a body.
+    pub enum BodyChange {
+        /// A block was copied. The copy lies behind it, and the copy's joint continues the rhythm of the neighbouring joints.
+        Duplicate = "duplicate";
+        /// A block was split into two halves, held straight: at first this makes hardly any difference.
+        Split = "split";
+        /// A block was removed, with its joint.
+        Remove = "remove";
+        /// Two neighbouring blocks were merged: the inverse of a split.
+        Merge = "merge";
+        /// A block was inserted between two neighbours, as the mean of both.
+        Insert = "insert";
+        /// The sizes of a block changed a lot.
+        Resize = "resize";
+    }
 }
 
 /// Standard deviation of the logarithm of a size in [`BodyChange::Resize`].
@@ -42,18 +44,6 @@ impl BodyChange {
         (Self::Insert, 0.03),
         (Self::Resize, 0.04),
     ];
-
-    /// Returns the name of the change.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Duplicate => "duplicate",
-            Self::Split => "split",
-            Self::Remove => "remove",
-            Self::Merge => "merge",
-            Self::Insert => "insert",
-            Self::Resize => "resize",
-        }
-    }
 
     /// Counts the places at which a body with this number of blocks can have this change: its blocks, or its pairs of neighbours.
     fn places(self, blocks: usize) -> usize {

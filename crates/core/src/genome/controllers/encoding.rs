@@ -98,9 +98,7 @@ pub trait ControllerEncoding {
 
     /// Draws all genes of a zeroed genome at random: every gene anywhere in its range.
     fn randomize(&mut self, body: &mut BodyGenes, space: &GenomeSpace, rng: &mut ChaCha8Rng) {
-        let mut draw = |gene: Gene<'_>, value: &mut f32| {
-            *value = gene.range.random(rng);
-        };
+        let mut draw = |gene: Gene<'_>, value: &mut f32| *value = gene.range.random(rng);
         let genes = &mut Genes::to(&mut draw);
         body.genes(space, genes);
         self.genes(space, genes);
@@ -115,9 +113,8 @@ pub trait ControllerEncoding {
         rng: &mut ChaCha8Rng,
     ) {
         let share = space.shift_share(shift_nm);
-        let mut shift = |gene: Gene<'_>, value: &mut f32| {
-            *value = gene.range.shift(*value, share, rng);
-        };
+        let mut shift =
+            |gene: Gene<'_>, value: &mut f32| *value = gene.range.shift(*value, share, rng);
         let genes = &mut Genes::to(&mut shift);
         body.genes(space, genes);
         self.genes(space, genes);

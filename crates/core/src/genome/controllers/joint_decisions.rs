@@ -71,8 +71,8 @@ impl JointDecisionGenes {
         for (joint, system) in systems.iter().enumerate() {
             let at = |error: Invalid| error.inside(&format!("systems[{joint}]"));
             let (bits, actions) = (JOINT_BITS.len(), JOINT_BENDS.len());
-            within("situation_bits", system.situation_bits(), bits..=bits).map_err(at)?;
-            within("actions", system.actions(), actions..=actions).map_err(at)?;
+            within("situation_bits", system.situation_bits, bits..=bits).map_err(at)?;
+            within("actions", system.actions, actions..=actions).map_err(at)?;
         }
         Ok(())
     }

@@ -63,7 +63,7 @@ pub use wave_rule::{JointGroup, RULE_SENSES, WaveRule};
 
 use serde::{Deserialize, Serialize};
 
-use super::gene::{Gene, Genes, GenomeShape, Quantity, check_limits};
+use super::gene::{Gene, Genes, GenomeShape, Quantity, check_limits, widen};
 use super::kind::ControllerKind;
 use super::space::GenomeSpace;
 use super::wave_space::{FREQUENCY, SERVO_DAMPING, STIFFNESS};
@@ -193,8 +193,11 @@ impl ControllerGenes {
         let wave = &mut space.wave;
         for (quantity, value) in self.values() {
             match quantity {
-                FREQUENCY => wave.widen_frequency(value),
-                STIFFNESS => wave.widen_stiffness(value),
+                FREQUENCY => widen([&mut wave.frequency_min_hz, &mut wave.frequency_max_hz], value),
+                STIFFNESS => {
+                    let least = &mut wave.stiffness_min_nm_per_rad;
+                    widen([least, &mut wave.stiffness_max_nm_per_rad], value);
+                }
                 SERVO_DAMPING => wave.servo_damping_nms_per_rad = value,
                 _ => {}
             }
@@ -273,21 +276,5 @@ mod tests {
         assert_eq!(message, "rules.rules[2].condition is 9; allowed: 10 to 10");
         let message = rules(|genes| genes.rules[3].wave = 5);
         assert_eq!(message, "rules.rules[3].wave is 5; allowed: 1 to 4");
-    }
-
-    #[test]
-    fn settings_of_other_kinds_do_not_matter_and_common_ones_do() {
-        use ControllerKind::{Gait, Signal, Wave};
-        for (setting, users) in [
-            ("torque_range_nm", vec![Signal, Wave]),
-            ("points_per_s", vec![Signal]),
-            ("wave.harmonics", vec![Wave, Gait]),
-            ("wave.angle_range_rad", vec![Gait]),
-            ("density_min_kg_m3", vec![Signal, Wave, Gait]),
-        ] {
-            for kind in [Signal, Wave, Gait] {
-                assert_eq!(kind.uses(setting), users.contains(&kind), "{setting} of {kind}");
-            }
-        }
     }
 }

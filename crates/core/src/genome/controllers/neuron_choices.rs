@@ -70,8 +70,6 @@ named_values! {
 /// Number of values that a neuron can read.
 pub const NEURON_SOURCES: usize = NeuronSource::ALL.len();
 
-impl NeuronSource {}
-
 /// Values of a gene that chooses the kind of a neuron.
 pub(super) const KIND_CODES: [f32; NeuronKind::ALL.len()] = codes();
 /// Values of a gene that chooses a source.

@@ -125,41 +125,18 @@ impl NeuronFunction {
         };
         let NeuronMoment { periods, step_s } = moment;
         let fraction = |value: f64| value - libm::floor(value);
+        let choice = |is_met: bool, one: f64, other: f64| if is_met { one } else { other };
         let response = match self {
             Self::Sum => a + b + c,
             Self::Product => a * b,
-            Self::Divide => {
-                if b == 0.0 {
-                    0.0
-                } else {
-                    a / b
-                }
-            }
+            Self::Divide => choice(b == 0.0, 0.0, a / b),
             Self::SumThreshold => f64::from(u8::from(a + b + c > 0.0)),
-            Self::GreaterThan => {
-                if a > b {
-                    1.0
-                } else {
-                    -1.0
-                }
-            }
-            Self::SignOf => {
-                if a == 0.0 {
-                    0.0
-                } else {
-                    a.signum()
-                }
-            }
+            Self::GreaterThan => choice(a > b, 1.0, -1.0),
+            Self::SignOf => choice(a == 0.0, 0.0, a.signum()),
             Self::Min => a.min(b).min(c),
             Self::Max => a.max(b).max(c),
             Self::Abs => a.abs(),
-            Self::If => {
-                if a > 0.0 {
-                    b
-                } else {
-                    c
-                }
-            }
+            Self::If => choice(a > 0.0, b, c),
             Self::Interpolate => b + (c - b) * a.clamp(0.0, 1.0),
             Self::Sin => libm::sin(a),
             Self::Cos => libm::cos(a),

@@ -89,13 +89,8 @@ impl ControllerEncoding for ReflexGait {
             let range = GeneRange::around_zero(most);
             for (index, (weight, input)) in weights.iter_mut().zip(REFLEX_INPUTS).enumerate() {
                 let field = format_args!("{axis}_weights[{index}]");
-                genes.gene(
-                    field,
-                    format_args!("{axis} reflex from {input}"),
-                    WEIGHT,
-                    range,
-                    weight,
-                );
+                let name = format_args!("{axis} reflex from {input}");
+                genes.gene(field, name, WEIGHT, range, weight);
             }
         }
         let range = GeneRange::around_zero(network.reflex_phase_rad_per_s);

@@ -14,7 +14,7 @@ use super::encoding::{
 };
 use super::wave::Waves;
 use super::wave_rule::{RULE_SENSES, WaveRule};
-use crate::genome::gene::{Genes, GenomeShape};
+use crate::genome::gene::{Genes, GenomeShape, coordinate_count};
 use crate::genome::kind::ControllerKind;
 use crate::genome::network_space::{MOST_LIBRARY_WAVES, MOST_WAVE_RULES};
 use crate::genome::space::GenomeSpace;
@@ -53,13 +53,6 @@ impl RuleGenes {
     }
 }
 
-/// Counts the coordinates of the genes that are visited.
-fn coordinates(genes: impl FnOnce(&mut Genes<'_>)) -> usize {
-    let mut count = 0;
-    genes(&mut Genes::to(&mut |gene, _| count += usize::from(!gene.range.is_point())));
-    count
-}
-
 impl GenomeSpace {
     /// Returns the range of coordinates of each wave of the library in a point of the unit cube; empty for kinds without a library.
     pub fn library_coordinates(&self, shape: GenomeShape) -> Vec<Range<usize>> {
@@ -68,8 +61,8 @@ impl GenomeSpace {
         }
         let mut genes = RuleGenes::zeroed(self, shape);
         let waves = genes.library.len();
-        let each = coordinates(|visit| genes.library_genes(self, visit)) / waves.max(1);
-        let end = self.dimension(shape) - coordinates(|visit| genes.rule_genes(visit));
+        let each = coordinate_count(|visit| genes.library_genes(self, visit)) / waves.max(1);
+        let end = self.dimension(shape) - coordinate_count(|visit| genes.rule_genes(visit));
         let start = end - waves * each;
         (0..waves).map(|wave| start + wave * each..start + (wave + 1) * each).collect()
     }

@@ -68,13 +68,8 @@ impl ServoGenes {
             let field = "damping_nms_per_rad";
             genes.gene(field, "servo damping", SERVO_DAMPING, damping, damping_nms_per_rad);
             genes.gene("bend_range_rad", "bend range", LIMIT, bend, &mut self.bend_range_rad);
-            genes.gene(
-                "twist_range_rad",
-                "twist range",
-                of_twist,
-                twist,
-                &mut self.twist_range_rad,
-            );
+            let value = &mut self.twist_range_rad;
+            genes.gene("twist_range_rad", "twist range", of_twist, twist, value);
         });
     }
 

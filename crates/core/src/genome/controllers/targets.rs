@@ -113,16 +113,10 @@ impl ControllerEncoding for TargetSignals {
 
     fn summary(&self, space: &GenomeSpace) -> Option<Vec<Feature>> {
         let hz = sign_changes_hz(self.points_per_s, self.all());
-        let (wave, unit) = (&space.wave, "N·m/rad");
-        let stiffness = self.stiffness_nm_per_rad;
+        let (stiffness, range) = (self.stiffness_nm_per_rad, space.wave.stiffnesses());
         let mut features = Vec::new();
-        if !wave.stiffnesses().is_point() {
-            features.push(Feature::new(
-                "stiffness".to_owned(),
-                unit,
-                stiffness,
-                wave.stiffnesses(),
-            ));
+        if !range.is_point() {
+            features.push(Feature::new("stiffness".to_owned(), "N·m/rad", stiffness, range));
         }
         features.push(rhythm(hz, self.points_per_s));
         for (joint, signals) in (1..).zip(&self.joints) {

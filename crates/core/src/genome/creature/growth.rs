@@ -121,13 +121,10 @@ fn mount_of(
     let about = |x: f32, z: f32| Rotation::from_xyzw(x, 0.0, z, half_turn);
     // The part extends backwards from its joint. The rotation of each side turns this direction outwards.
     let (at_m, side) = match connection.side {
-        BodySide::Front if parent.parent.is_some() => {
-            ([u * half_x, -half_y, v * half_z], Rotation::IDENTITY)
-        }
-        BodySide::Rear => ([u * half_x, -half_y, v * half_z], Rotation::IDENTITY),
-        BodySide::Front => {
+        BodySide::Front if parent.parent.is_none() => {
             ([u * half_x, half_y, v * half_z], Rotation::from_xyzw(0.0, 0.0, 1.0, 0.0))
         }
+        BodySide::Front | BodySide::Rear => ([u * half_x, -half_y, v * half_z], Rotation::IDENTITY),
         BodySide::Left => ([-half_x, u * half_y, v * half_z], about(0.0, -half_turn)),
         BodySide::Right => ([half_x, u * half_y, v * half_z], about(0.0, half_turn)),
         BodySide::Top => ([u * half_x, v * half_y, half_z], about(-half_turn, 0.0)),

@@ -12,7 +12,7 @@ const PASSES: usize = 12;
 /// Relative tolerance of a body's total volume.
 const VOLUME_TOLERANCE: f64 = 1.0e-3;
 
-fn volume_m3(grown: &[GrownPart]) -> f64 {
+pub(super) fn volume_m3(grown: &[GrownPart]) -> f64 {
     grown.iter().map(|part| part.size_m.into_iter().map(f64::from).product::<f64>()).sum()
 }
 
@@ -20,10 +20,8 @@ fn volume_m3(grown: &[GrownPart]) -> f64 {
 fn fill_volume(nodes: &mut [BodyNode], wanted_m3: f64) -> Vec<GrownPart> {
     let grown_m3 = volume_m3(&grow(nodes));
     let factor = libm::cbrt(wanted_m3 / grown_m3);
-    for node in nodes.iter_mut() {
-        node.sizes_mut()
-            .into_iter()
-            .for_each(|size_m| *size_m = (f64::from(*size_m) * factor) as f32);
+    for size_m in nodes.iter_mut().flat_map(BodyNode::sizes_mut) {
+        *size_m = (f64::from(*size_m) * factor) as f32;
     }
     grow(nodes)
 }

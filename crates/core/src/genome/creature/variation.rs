@@ -146,17 +146,13 @@ impl GenomeSpace {
 #[cfg(test)]
 mod tests {
     use super::super::check::check_creature;
+    use super::super::repair::volume_m3;
     use super::*;
     use crate::genome::ControllerGenes;
     use crate::genome::controllers::PartSource;
     use crate::genome::creature::grow;
     use crate::genome::creature::newborn::tests::{SHAPE, space};
     use crate::rng::{Purpose, stream};
-
-    fn volume_m3(genome: &Genome) -> f64 {
-        let parts = grow(&genome.body.nodes);
-        parts.iter().map(|part| part.size_m.into_iter().map(f64::from).product::<f64>()).sum()
-    }
 
     #[test]
     fn every_creature_that_is_made_can_be_built_and_has_the_volume() {
@@ -176,10 +172,10 @@ mod tests {
             for genome in children.collect::<Vec<_>>().iter().chain([&first, &second]) {
                 check_creature(&genome.body.nodes).expect("it can be built");
                 genome.controller.check().expect("its neurons can be wired");
-                assert!((volume_m3(genome) - 10.0).abs() < 0.01, "{}", volume_m3(genome));
+                let grown = grow(&genome.body.nodes);
+                assert!((volume_m3(&grown) - 10.0).abs() < 0.01, "{}", volume_m3(&grown));
                 space.check_genome(genome, shape).expect("of this space");
-                let joints = grow(&genome.body.nodes).len() - 1;
-                assert_eq!(genome.controller.joints(), joints);
+                assert_eq!(genome.controller.joints(), grown.len() - 1);
             }
         }
         // Bodies whose parts overlap are drawn again, so not every attempt gives a creature.

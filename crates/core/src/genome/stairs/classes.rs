@@ -73,31 +73,31 @@ mod tests {
     use crate::schema::check;
     use crate::world::Stairs;
 
+    fn all_held_out() -> impl Iterator<Item = (StairsClass, StairsGenome)> {
+        StairsClass::OPTIONS.iter().flat_map(|&class| {
+            (0..HELD_OUT_PER_CLASS).map(move |number| (class, held_out(class, number)))
+        })
+    }
+
     #[test]
     fn the_sixty_held_out_staircases_are_allowed_and_differ() {
         let mut seen: Vec<Stairs> = Vec::new();
-        for &class in StairsClass::OPTIONS {
-            for number in 0..HELD_OUT_PER_CLASS {
-                let genome = held_out(class, number);
-                check(&genome).expect("within the ranges");
-                let stairs = genome.stairs();
-                check(&stairs).expect("can be built");
-                let steepness = genome.rise_m / genome.tread_m;
-                assert!(class != StairsClass::House || (0.5..=0.8).contains(&steepness));
-                assert!(!seen.contains(&stairs));
-                seen.push(stairs);
-            }
+        for (class, genome) in all_held_out() {
+            check(&genome).expect("within the ranges");
+            let stairs = genome.stairs();
+            check(&stairs).expect("can be built");
+            let steepness = genome.rise_m / genome.tread_m;
+            assert!(class != StairsClass::House || (0.5..=0.8).contains(&steepness));
+            assert!(!seen.contains(&stairs));
+            seen.push(stairs);
         }
         assert_eq!(seen.len(), 60);
     }
 
     #[test]
     fn a_seed_gives_the_same_stairs_again_and_none_is_held_out() {
-        let mut seen: Vec<Stairs> = Vec::new();
+        let mut seen: Vec<Stairs> = all_held_out().map(|(_, genome)| genome.stairs()).collect();
         for &class in StairsClass::OPTIONS {
-            for number in 0..HELD_OUT_PER_CLASS {
-                seen.push(held_out(class, number).stairs());
-            }
             for seed in 0..200 {
                 let genome = class.of_seed(seed);
                 check(&genome).expect("within the ranges");
@@ -112,11 +112,7 @@ mod tests {
 
     #[test]
     fn drawn_stairs_are_of_all_classes_and_none_is_held_out() {
-        let held_out: Vec<Stairs> = StairsClass::OPTIONS
-            .iter()
-            .flat_map(|&class| (0..HELD_OUT_PER_CLASS).map(move |number| held_out(class, number)))
-            .map(|genome| genome.stairs())
-            .collect();
+        let held_out: Vec<Stairs> = all_held_out().map(|(_, genome)| genome.stairs()).collect();
         let (mut house, mut irregular, mut nosing) = (0, 0, 0);
         for number in 0..2000 {
             let genome = StairsGenome::random(&mut stream(60, 0, number, Purpose::Stairs));

@@ -3,7 +3,8 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::{EpisodeEnd, RecordedDecision, Xcs, XcsSettings, Zcs, ZcsSettings};
+use super::xcs_textbook::settings_for_woods;
+use super::{EpisodeEnd, RecordedDecision, Xcs, Zcs, ZcsSettings};
 use crate::learn::tasks::woods::{DIRECTIONS, FOOD, MOST_STEPS, Woods};
 use crate::rng::{Purpose, stream};
 
@@ -64,23 +65,17 @@ fn generations<L>(
 
 #[test]
 fn xcs_learns_woods1_from_recorded_play() {
-    let settings = XcsSettings {
-        population: 400,
-        wildcard_share: 0.5,
-        mutation_share: 0.01,
-        ..XcsSettings::default()
-    };
     let woods = Woods::woods1();
     let learn = |xcs: &mut Xcs, decisions: &[RecordedDecision], end, rng: &mut ChaCha8Rng| {
         xcs.learn(decisions, end, rng).unwrap();
     };
     let mut sum = 0.0;
     for run in 0..RUNS {
-        let mut xcs = Xcs::new(settings.clone(), woods.bits(), DIRECTIONS).unwrap();
+        let mut xcs = Xcs::new(settings_for_woods(400), woods.bits(), DIRECTIONS).unwrap();
         generations(&mut xcs, run, Xcs::frozen_action, learn);
         assert_eq!(xcs.check(), Ok(()));
         let steps = woods.mean_steps(|bits| xcs.frozen_action(bits).unwrap_or_default());
-        println!("frozen XCS takes {steps:.3} steps, {} rules", xcs.rules().len());
+        println!("frozen XCS takes {steps:.3} steps, {} rules", xcs.rules.len());
         sum += steps;
     }
     assert!((1.6875..=1.75).contains(&(sum / RUNS as f64)), "{sum}");

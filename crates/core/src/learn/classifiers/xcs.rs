@@ -22,13 +22,16 @@ use crate::check::{Invalid, within};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SavedXcs", into = "SavedXcs")]
 pub struct Xcs {
-    pub(super) settings: XcsSettings,
-    pub(super) situation_bits: usize,
-    pub(super) actions: usize,
+    /// Parameters of the system.
+    pub(crate) settings: XcsSettings,
+    /// Number of bits of a situation.
+    pub(crate) situation_bits: usize,
+    /// Number of actions.
+    pub(crate) actions: usize,
     /// Number of decisions learned from so far.
     pub(super) time: u64,
     /// Rules in order of birth.
-    pub(super) rules: Vec<XcsRule>,
+    pub(crate) rules: Vec<XcsRule>,
     /// Conditions and actions of `rules`, laid out for matching.
     pub(super) masks: MaskTable,
     /// Sum of the rules' numerosities.
@@ -95,26 +98,6 @@ impl Xcs {
             sums[self.masks.action(index)].add(&self.rules[index]);
         }
         sums.iter().map(PredictionSum::mean).collect()
-    }
-
-    /// Returns the rules in order of birth.
-    pub fn rules(&self) -> &[XcsRule] {
-        &self.rules
-    }
-
-    /// Returns the parameters of the system.
-    pub fn settings(&self) -> &XcsSettings {
-        &self.settings
-    }
-
-    /// Returns the number of bits of a situation.
-    pub fn situation_bits(&self) -> usize {
-        self.situation_bits
-    }
-
-    /// Returns the number of actions.
-    pub fn actions(&self) -> usize {
-        self.actions
     }
 
     /// Replaces the parameters, for instance by parameters without crossover and mutation, which condense the population.

@@ -107,17 +107,17 @@ mod tests {
     fn a_compact_system_decides_alike_in_every_situation_with_fewer_rules() {
         let whole = learned();
         let compact = whole.compacted();
-        assert!(compact.rules().len() * 2 < whole.rules().len(), "{}", compact.rules().len());
+        assert!(compact.rules.len() * 2 < whole.rules.len(), "{}", compact.rules.len());
         for bits in 0..64 {
             assert_eq!(compact.frozen_action(bits), whole.frozen_action(bits), "{bits:06b}");
             let first_two = |xcs: &Xcs| two_largest(&xcs.prediction_array(bits));
             assert_eq!(first_two(&compact), first_two(&whole), "{bits:06b}");
         }
         assert_eq!(compact.check(), Ok(()));
-        let copies: u32 = compact.rules().iter().map(|rule| rule.numerosity).sum();
+        let copies: u32 = compact.rules.iter().map(|rule| rule.numerosity).sum();
         assert_eq!(compact.numerosity, copies);
-        let is_kept = |rule| whole.rules().contains(rule);
-        assert!(compact.rules().iter().all(is_kept), "rules stay as they are");
+        let is_kept = |rule| whole.rules.contains(rule);
+        assert!(compact.rules.iter().all(is_kept), "rules stay as they are");
     }
 
     #[test]

@@ -118,15 +118,12 @@ mod tests {
     use super::*;
     use crate::rng::{Purpose, stream};
 
-    fn empty(settings: XcsSettings) -> Xcs {
-        Xcs::new(settings, 3, 2).unwrap()
-    }
-
     #[test]
     fn children_match_the_situation_and_average_their_parents_only_if_crossed() {
         let mut rng = stream(1, 0, 0, Purpose::Birth);
         for crossover_share in [0.0, 1.0] {
-            let mut xcs = empty(XcsSettings { crossover_share, ..XcsSettings::default() });
+            let mut xcs = Xcs::new(XcsSettings::default(), 3, 2).unwrap();
+            xcs.settings.crossover_share = crossover_share;
             xcs.settings.mutation_share = 0.0;
             xcs.add(XcsRule { numerosity: 2, ..experienced("10#", 0) });
             xcs.add(XcsRule { prediction: 200.0, fitness: 0.75, ..experienced("#01", 0) });

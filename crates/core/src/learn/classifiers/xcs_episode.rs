@@ -40,11 +40,7 @@ struct PendingActionSet {
     evolves: bool,
 }
 
-impl<'a> XcsEpisode<'a> {
-    fn new(xcs: &'a mut Xcs) -> Self {
-        Self { xcs, pending: None, matched: Vec::new(), report: ReplayReport::default() }
-    }
-
+impl XcsEpisode<'_> {
     /// Takes a decision in a situation and returns the action. Then it learns from the action before, whose payoff is now known. Bits
     /// beyond those of the learner are ignored. A given action beyond the last one counts as the last one.
     pub fn decide(&mut self, bits: u32, choice: ActionChoice, rng: &mut impl Rng) -> usize {
@@ -53,8 +49,7 @@ impl<'a> XcsEpisode<'a> {
         let mut nothing = Vec::new();
         let waiting = self.pending.as_mut().map_or(&mut nothing, |pending| &mut pending.rules);
         let covered = self.xcs.match_or_cover(bits, &mut self.matched, waiting, rng);
-        self.report.decisions = self.report.decisions.saturating_add(1);
-        self.report.covered = self.report.covered.saturating_add(u32::from(covered));
+        self.report.add(ReplayReport { decisions: 1, covered: u32::from(covered) });
         let predictions = self.xcs.predictions(&self.matched);
         let action = match choice {
             ActionChoice::Given(action) => action.min(self.xcs.actions - 1),
@@ -122,7 +117,8 @@ impl Xcs {
 
     /// Starts an episode from which the system learns one decision at a time.
     pub fn episode(&mut self) -> XcsEpisode<'_> {
-        XcsEpisode::new(self)
+        let report = ReplayReport::default();
+        XcsEpisode { xcs: self, pending: None, matched: Vec::new(), report }
     }
 
     /// Makes a rule for each action that has none, and writes the indices of the matching rules into `matched`. Returns whether it made a
@@ -201,17 +197,10 @@ impl Xcs {
 
 #[cfg(test)]
 mod tests {
-    use super::super::xcs_rules::samples::{experienced, near};
+    use super::super::xcs_rules::samples::{experienced, near, quiet};
     use super::*;
     use crate::learn::classifiers::{XcsRule, XcsSettings};
     use crate::rng::{Purpose, stream};
-
-    /// Returns an XCS with one rule for each bit and action, without crossover, mutation and the genetic algorithm.
-    fn quiet() -> Xcs {
-        let settings =
-            XcsSettings { ga_interval: 1.0e9, wildcard_share: 0.0, ..XcsSettings::default() };
-        Xcs::new(settings, 1, 2).unwrap()
-    }
 
     fn rule_of(xcs: &Xcs, bits: u32, action: u16) -> &XcsRule {
         xcs.rules.iter().find(|r| r.condition.matches(bits) && r.action == action).unwrap()
@@ -219,7 +208,7 @@ mod tests {
 
     #[test]
     fn updates_agree_with_those_by_hand() {
-        let mut xcs = quiet();
+        let mut xcs = quiet(1, 2);
         let mut rng = stream(1, 0, 0, Purpose::Birth);
         let once = |reward| [RecordedDecision { bits: 1, action: 0, reward }];
         xcs.learn(&once(1000.0), EpisodeEnd::Terminal, &mut rng).unwrap();
@@ -239,7 +228,7 @@ mod tests {
 
     #[test]
     fn payoff_flows_back_from_the_next_situation() {
-        let mut xcs = quiet();
+        let mut xcs = quiet(1, 2);
         let mut rng = stream(1, 0, 0, Purpose::Birth);
         let last = RecordedDecision { bits: 1, action: 0, reward: 1000.0 };
         xcs.learn(&[last], EpisodeEnd::Terminal, &mut rng).unwrap();
@@ -251,7 +240,7 @@ mod tests {
     #[test]
     fn time_up_is_worth_the_next_situation_and_an_end_is_not() {
         let mut rng = stream(1, 0, 0, Purpose::Birth);
-        let mut xcs = quiet();
+        let mut xcs = quiet(1, 2);
         let good = RecordedDecision { bits: 1, action: 0, reward: 1000.0 };
         let idle = RecordedDecision { bits: 0, action: 0, reward: 0.0 };
         xcs.learn(&[idle], EpisodeEnd::TimeOut { bits: 1 }, &mut rng).unwrap();
@@ -268,7 +257,7 @@ mod tests {
     #[test]
     fn a_report_counts_the_decisions_that_needed_covering() {
         let mut rng = stream(1, 0, 0, Purpose::Birth);
-        let mut xcs = quiet();
+        let mut xcs = quiet(1, 2);
         let seen = [0, 0, 1, 1, 0, 1].map(|bits| RecordedDecision { bits, action: 0, reward: 0.0 });
         let report = xcs.learn(&seen, EpisodeEnd::Terminal, &mut rng).unwrap();
         assert_eq!(report, ReplayReport { decisions: 6, covered: 2 });
@@ -277,7 +266,7 @@ mod tests {
     #[test]
     fn exploiting_takes_the_best_action_and_exploring_all() {
         let mut rng = stream(1, 0, 0, Purpose::Birth);
-        let mut xcs = quiet();
+        let mut xcs = quiet(1, 2);
         let good = RecordedDecision { bits: 1, action: 1, reward: 1000.0 };
         xcs.learn(&[good], EpisodeEnd::Terminal, &mut rng).unwrap();
         let mut counts = [0; 2];

@@ -82,15 +82,10 @@ impl Xcs {
 
 #[cfg(test)]
 mod tests {
+    use super::super::xcs_rules::samples::quiet;
     use super::*;
     use crate::learn::classifiers::XcsSettings;
     use crate::rng::{Purpose, stream};
-
-    fn quiet() -> Xcs {
-        let settings =
-            XcsSettings { ga_interval: 1.0e9, wildcard_share: 0.0, ..XcsSettings::default() };
-        Xcs::new(settings, 2, 3).unwrap()
-    }
 
     fn prediction(xcs: &Xcs, bits: u32, action: usize) -> Option<f32> {
         xcs.prediction_array(bits)[action]
@@ -104,7 +99,7 @@ mod tests {
     fn a_payoff_mixes_what_came_later_with_the_prediction() {
         // Action 2 is predicted to earn 500 in situation 1, but action 1 is taken and earns 100.
         for (trace, expected) in [(0.0, 355.0), (0.5, 213.0), (1.0, 71.0)] {
-            let mut xcs = quiet();
+            let mut xcs = quiet(2, 3);
             let mut rng = stream(1, 0, 0, Purpose::Birth);
             let known = xcs.learn(&[step(1, 2, 500.0)], EpisodeEnd::Terminal, &mut rng);
             assert!(known.is_ok());
@@ -118,7 +113,7 @@ mod tests {
 
     #[test]
     fn only_recorded_actions_get_rules_and_none_follows_itself() {
-        let mut xcs = quiet();
+        let mut xcs = quiet(2, 3);
         let mut rng = stream(1, 0, 0, Purpose::Birth);
         let mut learn = |decisions: &[RecordedDecision], end| {
             xcs.learn_returns(decisions, end, 0.0, false, &mut rng).unwrap().covered
@@ -131,7 +126,7 @@ mod tests {
         assert!((prediction(&xcs, 0, 0).unwrap() - 8.0).abs() < 0.01);
         assert!((prediction(&xcs, 0, 1).unwrap() - 79.0).abs() < 0.01);
         assert_eq!(prediction(&xcs, 0, 2), None);
-        assert_eq!(xcs.rules().len(), 3);
+        assert_eq!(xcs.rules.len(), 3);
     }
 
     #[test]

@@ -81,7 +81,7 @@ pub fn check_rules(
 /// Rules and systems for tests.
 #[cfg(test)]
 pub(super) mod samples {
-    use super::super::{SavedXcs, XcsSettings};
+    use super::super::{SavedXcs, Xcs, XcsSettings};
     use super::XcsRule;
 
     /// Returns a rule that is accurate and experienced enough to subsume others.
@@ -108,6 +108,13 @@ pub(super) mod samples {
     pub fn saved(rules: Vec<XcsRule>) -> SavedXcs {
         let settings = XcsSettings { population: 10, ..XcsSettings::default() };
         SavedXcs { settings, situation_bits: 3, actions: 3, time: 5, rules }
+    }
+
+    /// Returns a system that makes rules without wildcards and does not breed.
+    pub fn quiet(situation_bits: usize, actions: usize) -> Xcs {
+        let settings =
+            XcsSettings { ga_interval: 1.0e9, wildcard_share: 0.0, ..XcsSettings::default() };
+        Xcs::new(settings, situation_bits, actions).unwrap()
     }
 
     /// Checks a number against a value computed by hand.

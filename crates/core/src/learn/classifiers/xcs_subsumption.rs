@@ -36,14 +36,14 @@ mod tests {
     use super::super::xcs_rules::samples::experienced;
     use super::*;
 
-    fn empty(settings: XcsSettings) -> Xcs {
-        Xcs::new(settings, 3, 2).unwrap()
+    fn empty() -> Xcs {
+        Xcs::new(XcsSettings::default(), 3, 2).unwrap()
     }
 
     #[test]
     fn a_child_of_an_accurate_general_parent_only_adds_to_its_numerosity() {
         let settles = |change: &dyn Fn(&mut Xcs)| {
-            let mut xcs = empty(XcsSettings::default());
+            let mut xcs = empty();
             xcs.add(experienced("1##", 0));
             change(&mut xcs);
             xcs.settle(experienced("10#", 0), [0, 0]);
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(settles(&|xcs| xcs.rules[0].action = 1), (2, 1, 2));
         assert_eq!(settles(&|xcs| xcs.settings.ga_subsumption = false), (2, 1, 2));
         // A rule equal to another is never added, whether it is accurate or not.
-        let mut xcs = empty(XcsSettings::default());
+        let mut xcs = empty();
         xcs.add(XcsRule { error: 500.0, ..experienced("10#", 0) });
         xcs.settle(experienced("10#", 0), [0, 0]);
         assert_eq!((xcs.rules.len(), xcs.rules[0].numerosity), (1, 2));

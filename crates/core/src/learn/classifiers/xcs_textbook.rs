@@ -42,7 +42,7 @@ fn mean_share_right(task: Multiplexer, settings: &XcsSettings, problems: u32, co
         explore_multiplexer(&mut xcs, task, problems, &mut rng);
         assert_eq!(xcs.check(), Ok(()));
         right += share_right(&xcs, task, &mut rng);
-        rules += xcs.rules().len();
+        rules += xcs.rules.len();
     }
     let (right, rules) = (right / f64::from(count), rules as f64 / f64::from(count));
     println!("{} bits: {:.2} % right, {rules:.0} rules", task.bits(), 100.0 * right);
@@ -80,9 +80,9 @@ fn condensation_leaves_the_smallest_complete_rule_set() {
         explore_multiplexer(&mut xcs, task, 10_000, &mut rng);
         xcs.set_settings(still.clone()).unwrap();
         explore_multiplexer(&mut xcs, task, 20_000, &mut rng);
-        let optimal = xcs.rules().iter().filter(|rule| task.is_optimal(&rule.condition)).count();
-        println!("{} rules, {optimal} of them optimal", xcs.rules().len());
-        minimal += u32::from(xcs.rules().len() == 16 && optimal == 16);
+        let optimal = xcs.rules.iter().filter(|rule| task.is_optimal(&rule.condition)).count();
+        println!("{} rules, {optimal} of them optimal", xcs.rules.len());
+        minimal += u32::from(xcs.rules.len() == 16 && optimal == 16);
     }
     println!("{minimal} of 20 runs left exactly the 16 optimal rules");
     assert!(minimal >= 18);
@@ -119,7 +119,7 @@ fn mean_steps_to_food(woods: &Woods, settings: &XcsSettings, count: u32) -> f64 
         }
         assert_eq!(xcs.check(), Ok(()));
         frozen += woods.mean_steps(|bits| xcs.frozen_action(bits).unwrap_or_default());
-        rules += xcs.rules().len();
+        rules += xcs.rules.len();
     }
     let steps = f64::from(steps) / f64::from(200 * count);
     let count = f64::from(count);
@@ -127,26 +127,20 @@ fn mean_steps_to_food(woods: &Woods, settings: &XcsSettings, count: u32) -> f64 
     steps
 }
 
+/// Returns the settings for woods with wildcards.
+pub fn settings_for_woods(population: u32) -> XcsSettings {
+    let defaults = XcsSettings::default();
+    XcsSettings { population, wildcard_share: 0.5, mutation_share: 0.01, ..defaults }
+}
+
 #[test]
 fn woods1_is_solved_by_2000_problems() {
-    let settings = XcsSettings {
-        population: 400,
-        wildcard_share: 0.5,
-        mutation_share: 0.01,
-        ..XcsSettings::default()
-    };
-    assert!(mean_steps_to_food(&Woods::woods1(), &settings, 10) <= 1.75);
+    assert!(mean_steps_to_food(&Woods::woods1(), &settings_for_woods(400), 10) <= 1.75);
 }
 
 #[test]
 fn woods2_is_solved_by_2000_problems() {
-    let settings = XcsSettings {
-        population: 800,
-        wildcard_share: 0.5,
-        mutation_share: 0.01,
-        ..XcsSettings::default()
-    };
-    assert!(mean_steps_to_food(&Woods::woods2(), &settings, 10) <= 1.75);
+    assert!(mean_steps_to_food(&Woods::woods2(), &settings_for_woods(800), 10) <= 1.75);
 }
 
 #[test]

@@ -22,10 +22,12 @@ use crate::check::{Invalid, within};
 #[serde(try_from = "SavedZcs", into = "SavedZcs")]
 pub struct Zcs {
     pub(super) settings: ZcsSettings,
-    pub(super) situation_bits: usize,
-    pub(super) actions: usize,
+    /// Number of bits of a situation.
+    pub(crate) situation_bits: usize,
+    /// Number of actions.
+    pub(crate) actions: usize,
     /// Rules in order of birth.
-    pub(super) rules: Vec<ZcsRule>,
+    pub(crate) rules: Vec<ZcsRule>,
     /// Conditions and actions of `rules`, laid out for matching.
     pub(super) masks: MaskTable,
 }
@@ -106,21 +108,6 @@ impl Zcs {
     pub(super) fn add(&mut self, rule: ZcsRule) {
         self.masks.push(&rule.condition, rule.action);
         self.rules.push(rule);
-    }
-
-    /// Returns the rules in order of birth.
-    pub fn rules(&self) -> &[ZcsRule] {
-        &self.rules
-    }
-
-    /// Returns the number of bits of a situation.
-    pub fn situation_bits(&self) -> usize {
-        self.situation_bits
-    }
-
-    /// Returns the number of actions.
-    pub fn actions(&self) -> usize {
-        self.actions
     }
 
     /// Replaces the parameters.
@@ -251,6 +238,6 @@ mod tests {
         let report = zcs.learn(&seen, end, &mut stream(9, 0, 0, Purpose::Birth));
         assert_eq!(read.learn(&seen, end, &mut stream(9, 0, 0, Purpose::Birth)), report);
         assert_eq!(read, zcs);
-        assert_eq!((zcs.check(), zcs.rules().len()), (Ok(()), 400));
+        assert_eq!((zcs.check(), zcs.rules.len()), (Ok(()), 400));
     }
 }

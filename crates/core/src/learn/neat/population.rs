@@ -29,11 +29,12 @@ pub struct NeatPopulation {
     pub(super) progress: FitnessProgress,
     /// Species of this generation, in ascending order of id. Each has members.
     pub(super) records: Vec<SpeciesRecord>,
-    /// Species of the last generation, with their fitness.
+    /// Species of the last generation, from which this one descends, with their fitness; empty in the first generation.
     pub(super) evaluated: Vec<SpeciesSummary>,
     /// Id of the species of each genome.
-    pub(super) memberships: Vec<u32>,
-    pub(super) genomes: Vec<NetworkGenome>,
+    pub(crate) memberships: Vec<u32>,
+    /// Genomes of this generation.
+    pub(crate) genomes: Vec<NetworkGenome>,
 }
 
 impl NeatPopulation {
@@ -84,26 +85,6 @@ impl NeatPopulation {
             let genome = founder.clone();
             if is_founder { genome } else { mutated(genome, &only_weights, &mut rng).genome }
         })
-    }
-
-    /// Returns the genomes of this generation.
-    pub fn genomes(&self) -> &[NetworkGenome] {
-        &self.genomes
-    }
-
-    /// Returns the id of the species of each genome.
-    pub fn memberships(&self) -> &[u32] {
-        &self.memberships
-    }
-
-    /// Returns the settings of NEAT.
-    pub fn rules(&self) -> &NeatRules {
-        &self.rules
-    }
-
-    /// Returns the species of the last generation, from which this one descends; empty in the first generation.
-    pub fn species(&self) -> &[SpeciesSummary] {
-        &self.evaluated
     }
 
     /// Creates the next generation from the fitness of each genome of this one. Larger is better. Fitness that is missing or not finite

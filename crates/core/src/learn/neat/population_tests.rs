@@ -10,7 +10,7 @@ use super::rules::NeatRules;
 fn fitness(population: &NeatPopulation) -> Vec<f64> {
     let links = |genome: &NetworkGenome| genome.links.clone();
     let value = |link: LinkGene| f64::from(link.weight) * if link.enabled { 1.0 } else { 0.5 };
-    population.genomes().iter().map(|g| links(g).into_iter().map(value).sum()).collect()
+    population.genomes.iter().map(|g| links(g).into_iter().map(value).sum()).collect()
 }
 
 fn growing() -> NeatRules {
@@ -53,11 +53,11 @@ fn every_generation_passes_its_own_check_and_keeps_its_size() {
         fitness.truncate(49);
         population = population.next(&fitness, 7, generation);
         assert_eq!(population.check(), Ok(()), "generation {generation}");
-        assert_eq!(population.genomes().len(), 50);
-        assert_eq!(population.species().iter().map(|species| species.size).sum::<u32>(), 50);
+        assert_eq!(population.genomes.len(), 50);
+        assert_eq!(population.evaluated.iter().map(|species| species.size).sum::<u32>(), 50);
     }
-    assert!(population.genomes().iter().any(|genome| genome.hidden().len() >= 4));
-    assert!((2..=20).contains(&population.species().len()), "{}", population.species().len());
+    assert!(population.genomes.iter().any(|genome| genome.hidden().len() >= 4));
+    assert!((2..=20).contains(&population.evaluated.len()), "{}", population.evaluated.len());
 }
 
 #[test]
@@ -66,13 +66,13 @@ fn the_champion_of_a_species_of_more_than_five_is_kept() {
     let values = fitness(&first);
     let best = (0..30).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap();
     let next = first.next(&values, 7, 1);
-    assert_eq!(next.species().len(), 1);
-    assert!(next.genomes().contains(&first.genomes()[best]));
-    assert_eq!(next.species()[0].best_fitness, values[best]);
-    assert_eq!(next.species()[0].age, 1);
+    assert_eq!(next.evaluated.len(), 1);
+    assert!(next.genomes.contains(&first.genomes[best]));
+    assert_eq!(next.evaluated[0].best_fitness, values[best]);
+    assert_eq!(next.evaluated[0].age, 1);
     let few = NeatPopulation::first(NeatRules::default(), 3, 1, 0, 5, 7).unwrap();
     let kept = few.next(&[1.0; 5], 7, 1);
-    assert!(kept.genomes().iter().filter(|genome| few.genomes().contains(genome)).count() < 5);
+    assert!(kept.genomes.iter().filter(|genome| few.genomes.contains(genome)).count() < 5);
 }
 
 #[test]
@@ -88,10 +88,10 @@ fn a_species_without_progress_has_no_offspring() {
     for generation in 1..=4 {
         // The first species is the best; no species improves.
         let value = |&id: &u32| if id == 1 { 2.0 } else { 1.0 };
-        let values: Vec<f64> = population.memberships().iter().map(value).collect();
+        let values: Vec<f64> = population.memberships.iter().map(value).collect();
         population = population.next(&values, 7, generation);
-        let old = population.memberships().iter().filter(|&&id| (2..=10).contains(&id)).count();
-        assert!(population.memberships().contains(&1), "generation {generation}");
+        let old = population.memberships.iter().filter(|&&id| (2..=10).contains(&id)).count();
+        assert!(population.memberships.contains(&1), "generation {generation}");
         assert_eq!(old == 0, generation == 4, "generation {generation}: {old}");
     }
 }
@@ -107,9 +107,9 @@ fn only_the_two_best_species_have_offspring_after_a_standstill() {
     let mut population = NeatPopulation::first(rules, 2, 1, 0, 10, 7).unwrap();
     for generation in 1..=3 {
         let value = |&id: &u32| if [3, 4, 5].contains(&id) { 3.0 } else { 1.0 };
-        let values: Vec<f64> = population.memberships().iter().map(value).collect();
+        let values: Vec<f64> = population.memberships.iter().map(value).collect();
         population = population.next(&values, 7, generation);
-        let mut old = population.memberships().to_vec();
+        let mut old = population.memberships.clone();
         old.retain(|&id| id <= 10);
         old.dedup();
         // Of equal species, the older ones come first.
@@ -120,11 +120,11 @@ fn only_the_two_best_species_have_offspring_after_a_standstill() {
 #[test]
 fn a_population_can_descend_from_a_genome() {
     let old = after(NeatPopulation::first(growing(), 3, 1, 1, 20, 7).unwrap(), 1..=20);
-    let founder = &old.genomes()[3];
+    let founder = &old.genomes[3];
     let new = NeatPopulation::descended(growing(), founder, 20, 8).unwrap();
-    assert_eq!(&new.genomes()[0], founder);
-    assert_eq!(new.genomes()[1].links.len(), founder.links.len());
-    assert_ne!(&new.genomes()[1], founder);
+    assert_eq!(&new.genomes[0], founder);
+    assert_eq!(new.genomes[1].links.len(), founder.links.len());
+    assert_ne!(&new.genomes[1], founder);
     assert_eq!(after(new, 1..=10).check(), Ok(()));
 }
 

@@ -17,7 +17,7 @@ fn solver(
     let mut evaluations = 0;
     for generation in 1..=generations {
         let mut fitness = Vec::new();
-        for genome in population.genomes() {
+        for genome in &population.genomes {
             let (value, is_solved) = evaluate(genome);
             evaluations += 1;
             if is_solved {

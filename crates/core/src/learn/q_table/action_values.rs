@@ -20,8 +20,10 @@ pub const LARGEST_VALUE: f32 = 1e9;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(into = "SparseValues", try_from = "SparseValues")]
 pub struct ActionValues {
-    pub(super) states: usize,
-    pub(super) actions: usize,
+    /// Number of states.
+    pub(crate) states: usize,
+    /// Number of actions in each state.
+    pub(crate) actions: usize,
     /// Values state by state, one per action.
     pub(super) values: Vec<f32>,
     /// Number of experiences with each pair of state and action. It stays at its maximum once it is reached.
@@ -34,16 +36,6 @@ impl ActionValues {
     pub fn new(states: usize, actions: usize) -> Self {
         let pairs = states.saturating_mul(actions);
         Self { states, actions, values: vec![0.0; pairs], visits: vec![0; pairs] }
-    }
-
-    /// Returns the number of states.
-    pub fn states(&self) -> usize {
-        self.states
-    }
-
-    /// Returns the number of actions in each state.
-    pub fn actions(&self) -> usize {
-        self.actions
     }
 
     /// Returns the values of all actions in a state; empty if there is no such state.

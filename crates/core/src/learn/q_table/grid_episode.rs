@@ -36,12 +36,12 @@ fn epsilon_greedy(table: &ActionValues, state: u32, epsilon: f32, random: &mut i
     let share = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     let mut below = |count: usize| ((u128::from(random.next_u64()) * count as u128) >> 64) as usize;
     if share < f64::from(epsilon) {
-        return below(table.actions()) as u16;
+        return below(table.actions) as u16;
     }
     let values = table.values(state as usize);
     let best = values[usize::from(greedy(table, state))];
     let is_best = |action: &u16| values[usize::from(*action)].total_cmp(&best).is_eq();
-    let ties: Vec<u16> = (0..table.actions() as u16).filter(is_best).collect();
+    let ties: Vec<u16> = (0..table.actions as u16).filter(is_best).collect();
     ties[below(ties.len())]
 }
 

@@ -2,7 +2,7 @@
 
 use crate::evolve::Champion;
 use crate::score::{KeyframeHistory, Recording, Trial};
-use crate::world::{Pose, Vector};
+use crate::world::{BodyPlan, Pose, Vector};
 
 /// Movement of a champion, seen from the side. All points are y and z, in metres.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -29,24 +29,15 @@ impl Thumbnail {
         let empty = Self::of_trial(&champion.trial);
         let Some(recording) = recording else { return empty };
         let body = champion.body();
-        let middle = body.middle_part;
-        let last = recording.frames().len().saturating_sub(1);
-        let mut frames: Vec<usize> =
-            (0..PATH_POINTS).map(|i| i * last / (PATH_POINTS - 1)).collect();
-        frames.dedup();
-        let mut wanted = frames.into_iter().peekable();
-        let mut way_m = Vec::with_capacity(PATH_POINTS);
-        let mut parts_m = Vec::new();
-        for (index, frame) in recording.frames().enumerate() {
-            if wanted.next_if_eq(&index).is_some() {
-                way_m.extend(frame.get(middle).map(|pose| side(pose.translation)));
-            }
-            if index == last {
-                let parts = frame.iter().zip(&body.parts);
-                parts_m.extend(parts.map(|(pose, part)| (part.limb, quad(pose, part.size_m()))));
-            }
+        let frames: Vec<&[Pose]> = recording.frames().collect();
+        let Some(end) = frames.last() else { return empty };
+        let middle = |frame: usize| frames[frame].get(body.middle_part);
+        let path = samples(frames.len() - 1).into_iter().filter_map(middle);
+        Self {
+            way_m: path.map(|pose| side(pose.translation)).collect(),
+            parts_m: quads(&body, end),
+            ..empty
         }
-        Self { way_m, parts_m, ..empty }
     }
 
     /// Makes a thumbnail of the stairs and the simulated motion of a champion. Simulates at most the distance between two keyframes.
@@ -54,19 +45,26 @@ impl Thumbnail {
         let empty = Self::of_trial(&champion.trial);
         let middles = history.middles_m();
         let Some(last) = middles.len().checked_sub(1) else { return empty };
-        let mut samples: Vec<usize> =
-            (0..PATH_POINTS).map(|i| i * last / (PATH_POINTS - 1)).collect();
-        samples.dedup();
         let end = history.rollout_at(history.evaluation().steps);
-        let parts = champion.body().parts;
-        let parts = end.poses().iter().zip(&parts);
-        let quads = parts.map(|(pose, part)| (part.limb, quad(pose, part.size_m())));
         Self {
-            way_m: samples.into_iter().map(|sample| side(middles[sample])).collect(),
-            parts_m: quads.collect(),
+            way_m: samples(last).into_iter().map(|sample| side(middles[sample])).collect(),
+            parts_m: quads(&champion.body(), end.poses()),
             ..empty
         }
     }
+}
+
+/// Returns the indices of the path's points among samples up to the index `last`.
+fn samples(last: usize) -> Vec<usize> {
+    let mut samples: Vec<usize> = (0..PATH_POINTS).map(|i| i * last / (PATH_POINTS - 1)).collect();
+    samples.dedup();
+    samples
+}
+
+/// Returns the index of the limb and the corners of each part.
+fn quads(body: &BodyPlan, poses: &[Pose]) -> Vec<(usize, [[f32; 2]; 4])> {
+    let parts = poses.iter().zip(&body.parts);
+    parts.map(|(pose, part)| (part.limb, quad(pose, part.size_m()))).collect()
 }
 
 fn stairs(trial: &Trial) -> Vec<[f32; 2]> {

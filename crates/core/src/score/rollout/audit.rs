@@ -1,8 +1,7 @@
 //! The energy balance of many random snakes, computed independently of the simulation's own balance.
 
 use super::Rollout;
-use crate::genome::{ControllerKind, Genome, GenomeSpace};
-use crate::rng::{Purpose, stream};
+use crate::genome::{ControllerKind, Genome};
 use crate::score::Trial;
 use crate::world::{Disqualification, Simulation};
 
@@ -22,13 +21,6 @@ fn mechanical_energy_j(simulation: &Simulation) -> f64 {
         f64::from(moving_j / 2.0) + f64::from(weight_n * height_m)
     });
     energies_j.sum()
-}
-
-/// Draws a random snake of the default world.
-fn random_genome(kind: ControllerKind, individual: u32, trial: &Trial) -> Genome {
-    let space = GenomeSpace { controller: kind, ..GenomeSpace::default() };
-    let mut rng = stream(1, 1, individual, Purpose::Birth);
-    space.random_genome(trial.genome_shape(), &mut rng)
 }
 
 /// Returns the largest gain of mechanical energy beyond the work of the joints during a rollout, in J, less 5 % of the energy that the
@@ -65,7 +57,7 @@ fn audit(snakes: u32) {
         for kind in [ControllerKind::Gait, ControllerKind::Signal] {
             let mut healthy = 0;
             for individual in 0..snakes {
-                let genome = random_genome(kind, individual, &trial);
+                let genome = trial.random_genome_of(kind, individual);
                 let (gained_j, disqualified) = greatest_gain_j(&genome, &trial);
                 if disqualified.is_none() {
                     healthy += 1;

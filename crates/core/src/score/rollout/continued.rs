@@ -17,6 +17,7 @@ pub(super) struct Conditions {
     pub fitness: Fitness,
     pub energy_cost_per_kj: f32,
     pub senses: ActiveSenses,
+    /// Number of steps of the whole rollout.
     pub last_step: u32,
 }
 
@@ -37,14 +38,7 @@ impl Conditions {
 #[derive(Clone)]
 pub(super) struct TrialChange {
     at_step: u32,
-    to: Arc<Conditions>,
-}
-
-impl TrialChange {
-    /// Returns the number of steps of the whole rollout.
-    pub fn last_step(&self) -> u32 {
-        self.to.last_step
-    }
+    pub to: Arc<Conditions>,
 }
 
 impl Rollout {

@@ -102,7 +102,7 @@ impl Simulation {
         SnakeReading {
             yaw: turned(head.turn, Vector::Y).x,
             velocity_m_s: [middle.linear.y, middle.linear.z],
-            aside: middle.at.x / self.profile.half_width_m(),
+            aside: middle.at.x / self.profile.half_width_m,
         }
     }
 
@@ -133,19 +133,14 @@ fn axes(turn: Rotation) -> [Vector; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::genome::GenomeSpace;
-    use crate::rng::{Purpose, stream};
     use crate::score::{Rollout, Trial};
 
     #[test]
     fn limbs_feel_what_the_contacts_say() {
         let trial = Trial::default();
-        let space = GenomeSpace::default();
         let (mut readings, mut touches) = (Vec::new(), 0);
         for individual in 0..5 {
-            let mut rng = stream(1, 1, individual, Purpose::Birth);
-            let mut rollout =
-                Rollout::new(&space.random_genome(trial.genome_shape(), &mut rng), &trial);
+            let mut rollout = Rollout::new(&trial.random_genome(individual), &trial);
             while rollout.advance() {
                 let world = rollout.simulation();
                 world.read_limbs(&mut readings);
@@ -200,8 +195,7 @@ mod tests {
         let mut trial = Trial::default();
         trial.stairs.first_riser_y_m = 0.0;
         trial.start_y_m = -6.0;
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let genome = trial.random_genome(0);
         let mut world = Simulation::new(&trial.world_plan(&genome));
         for _ in 0..60 {
             world.step(&[Default::default(); 4]).expect("healthy");

@@ -20,8 +20,6 @@ impl Simulation {
 
 #[cfg(test)]
 mod tests {
-    use crate::genome::GenomeSpace;
-    use crate::rng::{Purpose, stream};
     use crate::score::Trial;
     use crate::world::{JointTorque, Shove, Simulation, Vector};
 
@@ -39,8 +37,7 @@ mod tests {
     #[test]
     fn a_shove_changes_the_speed_of_one_limb_and_is_no_gain_of_energy() {
         let trial = Trial::default();
-        let mut rng = stream(1, 1, 0, Purpose::Birth);
-        let genome = GenomeSpace::default().random_genome(trial.genome_shape(), &mut rng);
+        let genome = trial.random_genome(0);
         let mut world = Simulation::new(&trial.world_plan(&genome));
         let torques = vec![JointTorque::default(); world.body().joints.len()];
         (0..60).for_each(|_| world.step(&torques).expect("healthy"));

@@ -102,6 +102,15 @@ fn lifted(plan: &WorldPlan) -> Simulation {
     simulation
 }
 
+impl Simulation {
+    /// Takes this number of steps with the same torques, in which nothing may disqualify the snake.
+    fn take_steps(&mut self, count: u32, torques: &[JointTorque]) {
+        for _ in 0..count {
+            self.step(torques).expect("healthy");
+        }
+    }
+}
+
 /// Returns the kinetic energy of all parts, in J.
 fn kinetic_j(simulation: &Simulation) -> f32 {
     let parts = simulation.parts().iter().zip(&simulation.body().parts);
@@ -147,9 +156,7 @@ fn joint_torques_do_not_accelerate_the_snake_as_a_whole() {
     let torques: Vec<JointTorque> = (0..4)
         .map(|joint| JointTorque { bend_nm: 3.0 - joint as f32, twist_nm: joint as f32 })
         .collect();
-    for _ in 0..30 {
-        simulation.step(&torques).expect("healthy");
-    }
+    simulation.take_steps(30, &torques);
     let momentum = momentum(&simulation);
     let fastest = simulation.speeds_m_s().fold(0.0, f32::max);
     assert!(fastest > 0.1, "it moves: {fastest} m/s");
@@ -163,9 +170,7 @@ fn each_torque_turns_its_joint_about_its_own_axis_only() {
         (JointTorque { bend_nm: 0.0, twist_nm: 2.0 }, 1),
     ] {
         let (_, mut simulation) = weightless(2);
-        for _ in 0..20 {
-            simulation.step(&[torque]).expect("healthy");
-        }
+        simulation.take_steps(20, &[torque]);
         let angles = angles(&simulation, 0);
         for (axis, angle) in angles.into_iter().enumerate() {
             if axis == moved {
@@ -183,9 +188,7 @@ fn a_joint_pushed_into_its_limits_stops_there() {
     for sign in [1.0, -1.0] {
         let (plan, mut simulation) = weightless(2);
         let push = JointTorque { bend_nm: 20.0 * sign, twist_nm: 20.0 * sign };
-        for _ in 0..240 {
-            simulation.step(&[push]).expect("healthy");
-        }
+        simulation.take_steps(240, &[push]);
         let joint = &plan.body.joints[0];
         let [bend, twist, third] = angles(&simulation, 0);
         assert!((bend * sign - joint.bend_limit_rad).abs() < tolerance_rad, "bend {bend}");
@@ -218,9 +221,7 @@ fn joint_damping_slows_the_joint_as_its_formula_says() {
         simulation.change_parts(|(index, part)| {
             part.angular.y = if index == 0 { 1.0 } else { -1.0 };
         });
-        for _ in 0..100 {
-            simulation.step(&[JointTorque::default()]).expect("healthy");
-        }
+        simulation.take_steps(100, &[JointTorque::default()]);
         simulation.parts()[0].angular.y
     };
     // For twist, the joint rate is 2 w and the torque on each limb c * 2 w, so w decays with exp(-2 c t / I), where I = m (width² +
@@ -242,9 +243,7 @@ fn a_soft_joint_stretches_by_the_pull_over_its_stiffness() {
         simulation.change_parts(|(index, part)| {
             part.force_n.y = if index == 0 { pull_n } else { -pull_n };
         });
-        for _ in 0..1200 {
-            simulation.step(&[JointTorque::default()]).expect("healthy");
-        }
+        simulation.take_steps(1200, &[JointTorque::default()]);
         simulation.parts()[0].at.y - simulation.parts()[1].at.y - 2.0
     };
     assert!(stretch_m(0.0, 50.0).abs() < 0.001, "rigid");
@@ -263,16 +262,12 @@ fn the_energy_spent_by_the_joints_is_the_energy_gained_by_the_limbs() {
     {
         let (_, mut simulation) = weightless(2);
         assert_eq!(simulation.effort(), Effort::default());
-        for _ in 0..40 {
-            simulation.step(&[torque]).expect("healthy");
-        }
+        simulation.take_steps(40, &[torque]);
         let (spent, gained) = (simulation.effort().energy_j, kinetic_j(&simulation));
         assert!(gained > 0.01 && (spent / gained - 1.0).abs() < 0.01, "{spent} J for {gained} J");
         // Held back by the opposite torque, the joints spend as much energy again.
         let back = JointTorque { bend_nm: -torque.bend_nm, twist_nm: -torque.twist_nm };
-        for _ in 0..40 {
-            simulation.step(&[back]).expect("healthy");
-        }
+        simulation.take_steps(40, &[back]);
         let both = simulation.effort().energy_j;
         assert!((both / (2.0 * gained) - 1.0).abs() < 0.02, "{both} J for twice {gained} J");
     }
@@ -290,9 +285,7 @@ fn a_turned_start_turns_and_moves_the_whole_snake() {
     let heading = simulation.poses().next().expect("a head").rotation * Vector::Y;
     assert!((heading - expected).length() < 1e-5, "{heading}");
     // The joints of the turned snake fit together: no constraint moves it.
-    for _ in 0..60 {
-        simulation.step(&[JointTorque::default(); 4]).expect("healthy");
-    }
+    simulation.take_steps(60, &[JointTorque::default(); 4]);
     assert!(simulation.effort().joint_drift_m < 1e-3 && simulation.effort().top_speed_m_s < 0.1);
 }
 
@@ -300,9 +293,7 @@ in_both_engines!(the_effort_of_a_thrown_snake_holds_its_maxima);
 fn the_effort_of_a_thrown_snake_holds_its_maxima() {
     let (_, mut simulation) = weightless(3);
     simulation.change_parts(|(_, part)| part.linear = Vector::new(3.0, 0.0, 4.0));
-    for _ in 0..60 {
-        simulation.step(&[JointTorque::default(); 2]).expect("healthy");
-    }
+    simulation.take_steps(60, &[JointTorque::default(); 2]);
     let Effort { energy_j, top_speed_m_s, joint_drift_m, sideways_m } = simulation.effort();
     assert!(energy_j == 0.0 && joint_drift_m < 1e-3, "{energy_j} J, {joint_drift_m} m");
     assert!((top_speed_m_s - 5.0).abs() < 0.01 && (sideways_m - 3.0).abs() < 0.01);
@@ -361,7 +352,7 @@ fn drift(limbs: usize) -> (f32, f32) {
     let still = vec![JointTorque::default(); limbs - 1];
     simulation.step(&still).expect("healthy");
     let (momentum_before, energy_before_j) = (momentum(&simulation), kinetic_j(&simulation));
-    (0..600).for_each(|_| simulation.step(&still).expect("healthy"));
+    simulation.take_steps(600, &still);
     let is_free = |joint| angles(&simulation, joint).iter().all(|angle| angle.abs() < 2.9);
     assert!((0..limbs - 1).all(is_free), "a joint that hits its limit loses energy, as it should");
     let lost = (momentum(&simulation) - momentum_before).length();
@@ -383,9 +374,7 @@ fn a_fall_follows_the_gravity_of_the_settings() {
         let mut plan = plan(2);
         plan.physics.gravity_m_s2 = gravity_m_s2;
         let mut simulation = lifted(&plan);
-        for _ in 0..60 {
-            simulation.step(&[JointTorque::default()]).expect("healthy");
-        }
+        simulation.take_steps(60, &[JointTorque::default()]);
         30.5 - simulation.parts()[0].at.z
     };
     for gravity in [1.62, 9.81] {

@@ -25,7 +25,7 @@ impl Stairs {
         }
         let [from_y_m, from_z_m] = self.handle_m(step);
         let [along_m, up_m] = [y_m - from_y_m, z_m - from_z_m];
-        let (mut rises_m, mut treads_m) = (self.rises_m(), self.each_tread_m());
+        let [mut rises_m, mut treads_m, slopes_m] = self.each_step();
         let add = |length_m: &mut f32, by_m: f32| {
             if by_m != 0.0 {
                 *length_m = on_grain_m(*length_m + by_m);
@@ -41,27 +41,27 @@ impl Stairs {
             Some(before) => add(&mut treads_m[before], along_m),
             None => add(&mut first_riser_y_m, along_m),
         }
-        Self { first_riser_y_m, ..self.with_steps(rises_m, treads_m, self.slopes_m()) }
+        Self { first_riser_y_m, ..self.with_steps([rises_m, treads_m, slopes_m]) }
     }
 
     /// Returns the stairs with another rise of one step, in metres. The steps above it are lifted or lowered.
     #[must_use]
     pub fn with_step_rise(&self, step: u32, rise_m: f32) -> Self {
-        let mut rises_m = self.rises_m();
+        let [mut rises_m, treads_m, slopes_m] = self.each_step();
         if let Some(of) = rises_m.get_mut(step as usize) {
             *of = on_grain_m(rise_m);
         }
-        self.with_steps(rises_m, self.each_tread_m(), self.slopes_m())
+        self.with_steps([rises_m, treads_m, slopes_m])
     }
 
     /// Returns the stairs with another tread of one step, in metres. The steps behind it are moved.
     #[must_use]
     pub fn with_step_tread(&self, step: u32, tread_m: f32) -> Self {
-        let mut treads_m = self.each_tread_m();
+        let [rises_m, mut treads_m, slopes_m] = self.each_step();
         if let Some(of) = treads_m.get_mut(step as usize) {
             *of = on_grain_m(tread_m);
         }
-        self.with_steps(self.rises_m(), treads_m, self.slopes_m())
+        self.with_steps([rises_m, treads_m, slopes_m])
     }
 
     /// Returns the stairs with a copy of a step inserted behind it.
@@ -73,11 +73,7 @@ impl Stairs {
             }
             each
         };
-        self.with_steps(
-            copied(self.rises_m()),
-            copied(self.each_tread_m()),
-            copied(self.slopes_m()),
-        )
+        self.with_steps(self.each_step().map(copied))
     }
 
     /// Returns the stairs without this step. The steps behind it move into its place.
@@ -89,22 +85,17 @@ impl Stairs {
             }
             each
         };
-        self.with_steps(rest(self.rises_m()), rest(self.each_tread_m()), rest(self.slopes_m()))
+        self.with_steps(self.each_step().map(rest))
     }
 
-    fn rises_m(&self) -> Vec<f32> {
-        (0..self.steps).map(|step| self.step_rise_m(step)).collect()
+    /// Returns the rise, the tread and the slope of each step.
+    fn each_step(&self) -> [Vec<f32>; 3] {
+        let lengths: [fn(&Self, u32) -> f32; 3] =
+            [Self::step_rise_m, Self::step_tread_m, Self::step_slope_m];
+        lengths.map(|length_m| (0..self.steps).map(|step| length_m(self, step)).collect())
     }
 
-    fn each_tread_m(&self) -> Vec<f32> {
-        (0..self.steps).map(|step| self.step_tread_m(step)).collect()
-    }
-
-    fn slopes_m(&self) -> Vec<f32> {
-        (0..self.steps).map(|step| self.step_slope_m(step)).collect()
-    }
-
-    fn with_steps(&self, rises_m: Vec<f32>, treads_m: Vec<f32>, slopes_m: Vec<f32>) -> Self {
+    fn with_steps(&self, [rises_m, treads_m, slopes_m]: [Vec<f32>; 3]) -> Self {
         let steps = rises_m.len() as u32;
         Self {
             steps,

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::run::LocalPool;
+use crate::run::experiment::tests::finish;
 use snakes_core::evolve::{RunPlan, Settings, with_field};
 use snakes_core::save::{ExistingRun, SavesFolder};
 use snakes_core::schema::SettingValue;
@@ -22,10 +23,19 @@ fn start(folder: &tempfile::TempDir) -> BackgroundRun {
 }
 
 fn start_after(folder: &tempfile::TempDir, before: Option<BackgroundRun>) -> BackgroundRun {
+    start_changed(folder, plan(), [], before)
+}
+
+fn start_changed(
+    folder: &tempfile::TempDir,
+    plan: RunPlan,
+    changes: impl IntoIterator<Item = (String, SettingValue)>,
+    before: Option<BackgroundRun>,
+) -> BackgroundRun {
     let evaluator = Arc::new(LocalPool::new(2).expect("threads"));
     let saves = SavesFolder::find(Some(folder.path()));
-    let source = RunSource::in_saves(&saves, plan(), ExistingRun::Keep);
-    BackgroundRun::start(source, evaluator, [], before).expect("a thread")
+    let source = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
+    BackgroundRun::start(source, evaluator, changes, before).expect("a thread")
 }
 
 /// Waits for the next event of any kind.
@@ -227,10 +237,7 @@ fn progress_counts_the_current_generation_of_any_size() {
         let field = format!("evolution.{field}");
         plan.settings = with_field(&plan.settings, &field, value).expect("allowed");
     }
-    let evaluator = Arc::new(LocalPool::new(2).expect("threads"));
-    let saves = SavesFolder::find(Some(folder.path()));
-    let source = RunSource::in_saves(&saves, plan, ExistingRun::Keep);
-    let background = BackgroundRun::start(source, evaluator, [], None).expect("a thread");
+    let background = start_changed(&folder, plan, [], None);
     assert!(matches!(next(&background), RunEvent::Opened(_)));
     assert_eq!(background.progress(), (0, 20));
     // The first generation has only newborns; later generations have the size of the population.
@@ -342,11 +349,7 @@ fn a_finished_run_that_is_opened_with_more_generations_has_the_bits_of_one_made_
     let expected = hash_at_end(&in_time);
     let finished = start(&folders[1]);
     let short = hash_at_end(&finished);
-    let evaluator = Arc::new(LocalPool::new(2).expect("threads"));
-    let saves = SavesFolder::find(Some(folders[1].path()));
-    let source = RunSource::in_saves(&saves, plan(), ExistingRun::Keep);
-    let again =
-        BackgroundRun::start(source, evaluator, longer(), Some(finished)).expect("a thread");
+    let again = start_changed(&folders[1], plan(), longer(), Some(finished));
     assert_eq!(opened(&again).reports.len(), 3);
     let found = hash_at_end(&again);
     assert_eq!(found, expected);
@@ -357,12 +360,7 @@ fn a_finished_run_that_is_opened_with_more_generations_has_the_bits_of_one_made_
 fn in_the_background_a_run_has_the_same_hash() {
     let folder = tempfile::tempdir().expect("a folder");
     let run_hash = hash_at_end(&start(&folder));
-    let mut experiment = Experiment::new(plan());
-    let evaluator = LocalPool::new(1).expect("threads");
-    while !experiment.is_over() {
-        experiment.run_generation(&evaluator, &RunControl::default()).expect("not cancelled");
-    }
-    assert_eq!(run_hash, experiment.run_hash());
+    assert_eq!(run_hash, finish(Experiment::new(plan()), 1).run_hash());
     let saved = std::fs::read_dir(folder.path()).expect("a folder").count();
     assert!(saved > 0, "the best was saved");
 }

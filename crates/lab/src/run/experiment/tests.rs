@@ -14,13 +14,17 @@ fn small(seed: u64) -> Experiment {
     Experiment::new(RunPlan::new("test", seed, settings))
 }
 
-fn hash_with(threads: usize, seed: u64) -> u64 {
-    let mut experiment = small(seed);
+/// Runs all generations that are left, on this number of threads.
+pub fn finish(mut experiment: Experiment, threads: usize) -> Experiment {
     let evaluator = LocalPool::new(threads).expect("threads");
     while !experiment.is_over() {
         experiment.run_generation(&evaluator, &RunControl::default()).expect("not cancelled");
     }
-    experiment.run_hash()
+    experiment
+}
+
+fn hash_with(threads: usize, seed: u64) -> u64 {
+    finish(small(seed), threads).run_hash()
 }
 
 #[test]
@@ -39,10 +43,7 @@ fn a_cancelled_generation_leaves_the_experiment_as_it_was() {
     cancelled.cancel();
     assert_eq!(experiment.run_generation(&evaluator, &cancelled), Err(Cancelled));
     assert_eq!(experiment.finished(), 0);
-    while !experiment.is_over() {
-        experiment.run_generation(&evaluator, &RunControl::default()).expect("not cancelled");
-    }
-    assert_eq!(experiment.run_hash(), hash_with(1, 1));
+    assert_eq!(finish(experiment, 2).run_hash(), hash_with(1, 1));
 }
 
 /// An evaluator that panics on one genome, leaves out another, and reports in descending order.
@@ -156,11 +157,7 @@ fn known_evaluations_are_not_repeated_and_change_nothing() {
 
 #[test]
 fn the_last_generation_is_kept_with_its_parents_and_the_best_has_its_ancestry() {
-    let mut experiment = small(1);
-    let evaluator = LocalPool::new(2).expect("threads");
-    while !experiment.is_over() {
-        experiment.run_generation(&evaluator, &RunControl::default()).expect("not cancelled");
-    }
+    let experiment = finish(small(1), 2);
     let generation = experiment.generation().expect("kept");
     assert_eq!((generation.number, generation.genomes.len()), (3, 12));
     let best = experiment.best().expect("one is healthy");

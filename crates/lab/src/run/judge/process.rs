@@ -24,7 +24,8 @@ pub(super) struct PythonProcess {
     child: Child,
     orders: ChildStdin,
     answers: BufReader<ChildStdout>,
-    version: String,
+    /// Version of the judge's package.
+    pub version: String,
     /// Working folder of the process, in which MuJoCo leaves a log of warnings.
     _folder: tempfile::TempDir,
 }
@@ -111,11 +112,6 @@ impl PythonProcess {
             Err(other) => return Err(other),
         }
         Ok(started)
-    }
-
-    /// Returns the version of the judge's package.
-    pub fn version(&self) -> &str {
-        &self.version
     }
 
     /// Sends a message to the process.

@@ -3,6 +3,7 @@
 mod families;
 
 use super::*;
+use crate::run::experiment::tests::finish;
 use crate::run::{LocalPool, RunControl};
 use snakes_core::evolve::{Founder, Settings, StrategyKind};
 use snakes_core::genome::ControllerKind;
@@ -19,6 +20,11 @@ fn plan() -> RunPlan {
 
 fn source(folder: &Path, earlier: ExistingRun) -> RunSource {
     RunSource::in_saves(&SavesFolder::find(Some(folder)), plan(), earlier)
+}
+
+/// Returns the source of a run with this plan, which continues if it is there.
+fn source_of(plan: &RunPlan, saves: &Path) -> RunSource {
+    RunSource::in_saves(&SavesFolder::find(Some(saves)), plan.clone(), ExistingRun::Keep)
 }
 
 /// Evolves a recorded run for `generations` or to its end, whichever comes first.
@@ -38,6 +44,14 @@ fn evolve(run: &mut RecordedRun, generations: u32) {
     }
 }
 
+/// Returns a folder of saves, and a run in it that has evolved for `generations`.
+fn evolved(generations: u32) -> (tempfile::TempDir, RecordedRun) {
+    let saves = tempfile::tempdir().expect("a folder");
+    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
+    evolve(&mut run, generations);
+    (saves, run)
+}
+
 /// Returns two kinds of controllers for strategies that allow them, and all allowed kinds for others.
 fn controllers_of(strategy: StrategyKind) -> Vec<ControllerKind> {
     let all: Vec<ControllerKind> = strategy.controllers().collect();
@@ -46,12 +60,7 @@ fn controllers_of(strategy: StrategyKind) -> Vec<ControllerKind> {
 }
 
 fn uninterrupted(plan: &RunPlan) -> Experiment {
-    let mut experiment = Experiment::new(plan.clone());
-    while !experiment.is_over() {
-        let evaluator = LocalPool::new(1).expect("threads");
-        experiment.run_generation(&evaluator, &RunControl::default()).expect("not cancelled");
-    }
-    experiment
+    finish(Experiment::new(plan.clone()), 1)
 }
 
 /// Returns the sorted names of all files in a folder, including hidden ones.
@@ -94,9 +103,7 @@ fn the_species_of_all_generations_are_there_after_a_resume() {
     let saves = tempfile::tempdir().expect("a folder");
     let mut path = None;
     for stop in [3, 6] {
-        let folder = SavesFolder::find(Some(saves.path()));
-        let source = RunSource::in_saves(&folder, plan.clone(), ExistingRun::Keep);
-        let mut run = source.open("a test").expect("opened");
+        let mut run = source_of(&plan, saves.path()).open("a test").expect("opened");
         let read: Vec<_> = run.reports.iter().map(|report| report.species.clone()).collect();
         assert_eq!(read, expected[..stop - 3]);
         evolve(&mut run, 3);
@@ -109,15 +116,12 @@ fn the_species_of_all_generations_are_there_after_a_resume() {
 
 fn assert_continues_after_any_stop(plan: &RunPlan) {
     let expected = uninterrupted(plan);
-    let source = |saves: &Path| {
-        RunSource::in_saves(&SavesFolder::find(Some(saves)), plan.clone(), ExistingRun::Keep)
-    };
     for stop in 1..=expected.finished() {
         let saves = tempfile::tempdir().expect("a folder");
-        let mut first = source(saves.path()).open("a test").expect("opened");
+        let mut first = source_of(plan, saves.path()).open("a test").expect("opened");
         evolve(&mut first, stop);
         drop(first);
-        let mut again = source(saves.path()).open("a test").expect("opened");
+        let mut again = source_of(plan, saves.path()).open("a test").expect("opened");
         assert_eq!(again.reports.len() as u32, stop);
         let places = |experiment: &Experiment| -> Vec<_> {
             let ancestry = experiment.ancestry();
@@ -140,9 +144,7 @@ fn assert_continues_after_any_stop(plan: &RunPlan) {
 
 #[test]
 fn old_checkpoints_are_thinned_out_but_champions_are_kept() {
-    let saves = tempfile::tempdir().expect("a folder");
-    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
-    evolve(&mut run, 6);
+    let (_saves, run) = evolved(6);
     let files = names_in(run.recorder.folder());
     let of = |prefix: &str| files.iter().filter(|name| name.starts_with(prefix)).count();
     assert_eq!(of("generation-"), 6, "{files:?}");
@@ -154,9 +156,7 @@ fn old_checkpoints_are_thinned_out_but_champions_are_kept() {
 
 #[test]
 fn without_its_latest_checkpoint_a_run_continues_from_an_earlier_one() {
-    let saves = tempfile::tempdir().expect("a folder");
-    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
-    evolve(&mut run, 4);
+    let (saves, run) = evolved(4);
     let folder = run.recorder.folder().to_owned();
     drop(run);
     for removed in ["checkpoint-4.ron", "checkpoint-3.ron"] {
@@ -196,9 +196,7 @@ fn a_folder_of_another_run_is_refused() {
 
 #[test]
 fn a_run_whose_plan_was_edited_is_refused() {
-    let saves = tempfile::tempdir().expect("a folder");
-    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
-    evolve(&mut run, 2);
+    let (_saves, run) = evolved(2);
     let folder = run.recorder.folder().to_owned();
     drop(run);
     let file = folder.join("run.ron");
@@ -211,9 +209,7 @@ fn a_run_whose_plan_was_edited_is_refused() {
 
 #[test]
 fn damaged_evaluations_of_the_current_generation_are_ignored() {
-    let saves = tempfile::tempdir().expect("a folder");
-    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
-    evolve(&mut run, 1);
+    let (saves, run) = evolved(1);
     let folder = run.recorder.folder().to_owned();
     drop(run);
     for damage in [vec![0; 500], b"{}\n{}\n".to_vec(), vec![b'x'; 11 * 1024 * 1024]] {
@@ -291,8 +287,7 @@ fn a_setting_changed_there_and_back_has_the_same_effect_after_a_resume() {
     let plan = changing_plan(StrategyKind::Halving);
     let hash = |is_stopped: bool| {
         let saves = tempfile::tempdir().expect("a folder");
-        let folder = SavesFolder::find(Some(saves.path()));
-        let source = RunSource::in_saves(&folder, plan.clone(), ExistingRun::Keep);
+        let source = source_of(&plan, saves.path());
         let mut run = source.clone().open("a test").expect("opened");
         evolve(&mut run, 1);
         for parents in ["1", "4"] {
@@ -313,9 +308,7 @@ fn a_setting_changed_there_and_back_has_the_same_effect_after_a_resume() {
 fn a_changed_run_stopped_after_any_generation_continues_bit_for_bit() {
     for (strategy, changes) in CHANGES {
         let plan = changing_plan(strategy);
-        let source = |saves: &Path| {
-            RunSource::in_saves(&SavesFolder::find(Some(saves)), plan.clone(), ExistingRun::Keep)
-        };
+        let source = |saves: &Path| source_of(&plan, saves);
         let saves = tempfile::tempdir().expect("a folder");
         let mut whole = source(saves.path()).open("a test").expect("opened");
         evolve_changing(&mut whole, changes, u32::MAX);
@@ -352,10 +345,8 @@ fn a_changed_run_stopped_after_any_generation_continues_bit_for_bit() {
 #[test]
 fn a_changed_run_without_its_latest_checkpoints_repeats_its_changes_at_their_generations() {
     for (strategy, changes) in CHANGES {
-        let plan = changing_plan(strategy);
         let saves = tempfile::tempdir().expect("a folder");
-        let source =
-            RunSource::in_saves(&SavesFolder::find(Some(saves.path())), plan, ExistingRun::Keep);
+        let source = source_of(&changing_plan(strategy), saves.path());
         let mut run = source.clone().open("a test").expect("opened");
         evolve_changing(&mut run, changes, u32::MAX);
         let (hash, folder) = (run.experiment.run_hash(), run.recorder.folder().to_owned());
@@ -378,9 +369,7 @@ fn a_changed_run_without_its_latest_checkpoints_repeats_its_changes_at_their_gen
 
 #[test]
 fn a_finished_run_can_be_made_longer() {
-    let saves = tempfile::tempdir().expect("a folder");
-    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
-    evolve(&mut run, 9);
+    let (saves, mut run) = evolved(9);
     assert!(run.experiment.is_over());
     let field = "evolution.generations";
     change(&mut run, field, "8").expect("allowed").expect("a change");
@@ -396,10 +385,8 @@ fn a_finished_run_can_be_made_longer() {
 
 #[test]
 fn evaluations_from_before_a_change_are_not_reused_after_it() {
-    let plan = changing_plan(StrategyKind::Halving);
     let saves = tempfile::tempdir().expect("a folder");
-    let source =
-        RunSource::in_saves(&SavesFolder::find(Some(saves.path())), plan, ExistingRun::Keep);
+    let source = source_of(&changing_plan(StrategyKind::Halving), saves.path());
     let (field, notes) = ("evolution.halving.mutation_range_nm", "evaluations.jsonl");
     // One run has the change from the beginning of its second generation.
     let other = tempfile::tempdir().expect("a folder");
@@ -446,9 +433,7 @@ fn evaluations_from_before_a_change_are_not_reused_after_it() {
 
 #[test]
 fn a_run_whose_changes_were_edited_is_refused() {
-    let saves = tempfile::tempdir().expect("a folder");
-    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
-    evolve(&mut run, 1);
+    let (saves, mut run) = evolved(1);
     let field = "evolution.halving.parents";
     change(&mut run, field, "2").expect("allowed");
     evolve(&mut run, 2);
@@ -484,8 +469,7 @@ fn a_run_with_a_founder_continues_bit_for_bit_and_differs_from_one_without() {
             assert_ne!(saves.of_run(&founded), saves.of_run(&plan), "a folder of its own");
             // The plan is read back unchanged from its folder.
             let folder = tempfile::tempdir().expect("a folder");
-            let saves = SavesFolder::find(Some(folder.path()));
-            let source = RunSource::in_saves(&saves, founded, ExistingRun::Keep);
+            let source = source_of(&founded, folder.path());
             drop(source.clone().open("a test").expect("opened"));
             assert_eq!(RunSource::in_folder(&source.folder).expect("read"), source);
         }
@@ -494,8 +478,7 @@ fn a_run_with_a_founder_continues_bit_for_bit_and_differs_from_one_without() {
 
 #[test]
 fn a_crashed_genome_is_saved_so_that_it_can_be_replayed() {
-    let saves = tempfile::tempdir().expect("a folder");
-    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
+    let (_saves, mut run) = evolved(0);
     let report =
         run.experiment.run_generation(&LocalPool::new(1).expect("threads"), &RunControl::default());
     let individual = report.expect("not cancelled").champion.expect("one is healthy");
@@ -525,9 +508,7 @@ fn the_list_of_runs_leaves_out_other_folders() {
 
 #[test]
 fn the_log_alone_can_be_read_and_damage_to_it_is_reported() {
-    let saves = tempfile::tempdir().expect("a folder");
-    let mut run = source(saves.path(), ExistingRun::Keep).open("a test").expect("opened");
-    evolve(&mut run, 1);
+    let (saves, run) = evolved(1);
     let folder = run.recorder.folder().to_owned();
     let (found, records) = load_log(&folder).expect("a run");
     assert_eq!((found, records.len()), (plan(), 1));

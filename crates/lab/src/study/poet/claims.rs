@@ -35,8 +35,7 @@ pub fn poet_claims(study: &PoetStudy) -> String {
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     rows.extend(study.hardest.iter().map(|hard| row(study, hard)));
     let head = ["claim", "must", "measured", "met"].map(str::to_owned).to_vec();
-    let claims = [only_poet(study), rising(study), fast(study)];
-    let claims: Vec<Vec<String>> = [head].into_iter().chain(claims).collect();
+    let claims = [head, only_poet(study), rising(study), fast(study)];
     format!(
         "seed {}: {} rounds, {} evaluations, {} stairs, {} solved, {} of them new challenges\n\n{}\nall agents: mean share of the agents of all stairs; POET: successes of its agent in {TRIALS} \
          perturbed trials; trials: of these stairs and their ancestors; direct: best share of the searches from scratch and their number\n\n{}",
@@ -46,8 +45,8 @@ pub fn poet_claims(study: &PoetStudy) -> String {
         study.stairs,
         study.solved,
         study.challenges.last().unwrap_or(&0),
-        markdown_table(&rows, 2),
-        markdown_table(&claims, 4)
+        markdown_table(rows, 2),
+        markdown_table(claims, 4)
     )
 }
 

@@ -37,7 +37,7 @@ pub struct LearningRates {
 
 impl LearningRates {
     pub fn new(dimension: usize, population: u32, shape: CovarianceShape, active: bool) -> Self {
-        let n = real(dimension);
+        let n = dimension as f64;
         // Eq. 49 of the tutorial, before scaling.
         let middle = libm::log((f64::from(population) + 1.0) / 2.0);
         let mut weights: Vec<f64> =
@@ -89,11 +89,6 @@ impl LearningRates {
 fn sum_and_mass<'a>(weights: impl Iterator<Item = &'a f64>) -> (f64, f64) {
     let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), w| (sum + w, squares + w * w));
     (sum, sum * sum / squares)
-}
-
-/// Converts a count to a float; exact up to 2⁵³.
-pub fn real(count: usize) -> f64 {
-    count as f64
 }
 
 #[cfg(test)]

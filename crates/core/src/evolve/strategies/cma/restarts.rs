@@ -36,9 +36,11 @@ pub struct CmaParameters {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RestartedCma {
-    parameters: CmaParameters,
-    current: Cma,
-    restarts: u32,
+    /// Parameters with which runs begin.
+    pub parameters: CmaParameters,
+    /// The current run.
+    pub current: Cma,
+    pub(super) restarts: u32,
     /// Number of times that the population of the large runs has doubled.
     doublings: u32,
     /// Whether the current run is a small run.
@@ -76,37 +78,6 @@ impl RestartedCma {
         self
     }
 
-    /// Returns the parameters with which runs begin.
-    pub fn parameters(&self) -> &CmaParameters {
-        &self.parameters
-    }
-
-    /// Forgets the values of all iterations so far: see [`Cma::forget_values`].
-    pub fn forget_values(&mut self) {
-        self.current.forget_values();
-    }
-
-    /// Returns the current run.
-    pub fn current(&self) -> &Cma {
-        &self.current
-    }
-
-    /// Returns the number of restarts.
-    #[cfg(test)]
-    pub fn restarts(&self) -> u32 {
-        self.restarts
-    }
-
-    /// Returns the number of candidates in the current iteration, which restarts change.
-    pub fn population(&self) -> u32 {
-        self.current.population()
-    }
-
-    /// Returns the candidates of the current iteration; see [`Cma::candidates`].
-    pub fn candidates(&self, random: impl Fn(u32) -> ChaCha8Rng) -> Vec<Vec<f64>> {
-        self.current.candidates(random)
-    }
-
     /// Learns from all candidates of the current iteration, best first; see [`Cma::update`]. If the run has then ended, a new run starts at
     /// a random point of the unit box.
     pub fn update(
@@ -116,7 +87,7 @@ impl RestartedCma {
     ) -> Result<(), Invalid> {
         self.current.update(ranked)?;
         let spent = self.limit.is_some_and(|limit| self.evaluations() >= limit);
-        let ended = spent || self.current.stop().is_some();
+        let ended = spent || self.current.stop.is_some();
         if ended && self.parameters.restart != RestartKind::None {
             self.restart(random)?;
         }
@@ -127,23 +98,20 @@ impl RestartedCma {
     pub fn check(&self) -> Result<(), Invalid> {
         self.current.check().map_err(|invalid| invalid.inside("current"))?;
         within("doublings", self.doublings, 0..=MOST_DOUBLINGS)?;
-        let start = vec![0.5; self.current.mean().len()];
+        let start = vec![0.5; self.current.mean.len()];
         Self::new(self.parameters.clone(), start)
             .map_err(|invalid| invalid.inside("parameters"))?;
         let CmaParameters { shape, active, .. } = self.parameters;
-        if !self.current.is_of(shape, active) {
-            return Err(Invalid::new(
-                "current",
-                "a run with other parameters",
-                "a run with the parameters of the state",
-            ));
+        if (self.current.shape, self.current.active) != (shape, active) {
+            let allowed = "a run with the parameters of the state";
+            return Err(Invalid::new("current", "a run with other parameters", allowed));
         }
         Ok(())
     }
 
     /// Returns the number of evaluations of the current run.
     fn evaluations(&self) -> u64 {
-        u64::from(self.current.iteration()) * u64::from(self.current.population())
+        u64::from(self.current.iteration) * u64::from(self.current.population)
     }
 
     fn restart(&mut self, random: &mut ChaCha8Rng) -> Result<(), Invalid> {
@@ -156,7 +124,7 @@ impl RestartedCma {
         let (step, population) = if self.small { self.small_run(random) } else { self.large_run() };
         self.limit = self.small.then_some(self.large_evaluations / 2);
         let CmaParameters { shape, active, .. } = self.parameters;
-        let start = random_point(self.current.mean().len(), random);
+        let start = random_point(self.current.mean.len(), random);
         self.current = Cma::new(start, step, population, shape, active)?;
         self.restarts = self.restarts.saturating_add(1);
         Ok(())
@@ -180,7 +148,7 @@ impl RestartedCma {
 
     /// Returns the population of large runs, limited by memory.
     fn large_population(&self) -> u32 {
-        let affordable = LARGEST_SAMPLE / self.current.mean().len();
+        let affordable = LARGEST_SAMPLE / self.current.mean.len();
         let affordable = u32::try_from(affordable).unwrap_or(LARGEST_POPULATION);
         let wanted = self.parameters.population.saturating_mul(1 << self.doublings);
         wanted.min(affordable).min(LARGEST_POPULATION)

@@ -27,18 +27,19 @@ pub const LARGEST_DIAGONAL: usize = 1_000_000;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cma {
-    shape: CovarianceShape,
+    pub(super) shape: CovarianceShape,
     /// Whether bad candidates make their directions less likely.
-    active: bool,
+    pub(super) active: bool,
     /// λ: number of candidates per iteration.
-    population: u32,
+    pub population: u32,
     /// g: number of iterations learned.
-    iteration: u32,
-    /// m: centre of the distribution.
-    mean: Vec<f64>,
-    pub(super) initial_step: f64,
+    pub iteration: u32,
+    /// m: centre of the distribution, which is the best estimate of the optimum.
+    pub mean: Vec<f64>,
+    /// Overall standard deviation at the start.
+    pub initial_step: f64,
     /// σ: overall standard deviation.
-    step: f64,
+    pub step: f64,
     /// p_σ: evolution path of the step size.
     step_path: Vec<f64>,
     /// p_c: evolution path of the covariance.
@@ -46,7 +47,8 @@ pub struct Cma {
     /// C, without σ²: the lower triangle row by row, or the diagonal only, depending on the shape.
     covariance: Vec<f64>,
     history: ValueHistory,
-    stop: Option<StopReason>,
+    /// Why the run has ended, after which it learns nothing. None while the run continues.
+    pub stop: Option<StopReason>,
 }
 
 impl Cma {
@@ -85,36 +87,6 @@ impl Cma {
         for (coordinate, scale) in scales.iter().enumerate().take(self.mean.len()) {
             self.covariance[diagonal_index(self.shape, coordinate)] *= scale * scale;
         }
-    }
-
-    /// Returns the number of candidates per iteration.
-    pub fn population(&self) -> u32 {
-        self.population
-    }
-
-    /// Returns the number of iterations learned.
-    pub fn iteration(&self) -> u32 {
-        self.iteration
-    }
-
-    /// Returns the centre of the distribution, which is the best estimate of the optimum.
-    pub fn mean(&self) -> &[f64] {
-        &self.mean
-    }
-
-    /// Returns the overall standard deviation.
-    pub fn step(&self) -> f64 {
-        self.step
-    }
-
-    /// Returns the overall standard deviation at the start.
-    pub fn initial_step(&self) -> f64 {
-        self.initial_step
-    }
-
-    /// Returns why the run has ended, after which it learns nothing. None while the run continues.
-    pub fn stop(&self) -> Option<StopReason> {
-        self.stop
     }
 
     /// Returns the candidates of the current iteration. `random` returns the stream of the candidate with an index, which should differ in
@@ -176,11 +148,6 @@ impl Cma {
         within("initial_step", self.initial_step, f64::MIN_POSITIVE..=f64::MAX)?;
         within("step", self.step, f64::MIN_POSITIVE..=f64::MAX)?;
         self.history.check(self.iteration, self.windows().long).map_err(|e| e.inside("history"))
-    }
-
-    /// Returns whether the run has the given shape and active setting.
-    pub(super) fn is_of(&self, shape: CovarianceShape, active: bool) -> bool {
-        self.shape == shape && self.active == active
     }
 
     fn windows(&self) -> HistoryWindows {
@@ -321,12 +288,9 @@ fn entries(shape: CovarianceShape, dimension: usize) -> usize {
     }
 }
 
-/// Returns the index of a coordinate's variance among the stored entries of a covariance.
+/// Returns the index of a coordinate's variance, the last entry of its row, among the stored entries of a covariance.
 fn diagonal_index(shape: CovarianceShape, coordinate: usize) -> usize {
-    match shape {
-        CovarianceShape::Full => coordinate * (coordinate + 3) / 2,
-        CovarianceShape::Diagonal => coordinate,
-    }
+    entries(shape, coordinate + 1) - 1
 }
 
 /// Checks that a run of this size fits into memory.

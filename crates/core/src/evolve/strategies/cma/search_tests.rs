@@ -70,7 +70,7 @@ fn best_first<'a>(candidates: &'a [Vec<f64>], values: &[f64]) -> Vec<RankedCandi
 
 /// Lets the run learn from one iteration of minimising `cost`. Returns the least cost of a candidate.
 fn step(run: &mut Cma, cost: impl Fn(&[f64]) -> f64, seed: u64) -> f64 {
-    let candidates = run.candidates(|index| stream(seed, run.iteration(), index));
+    let candidates = run.candidates(|index| stream(seed, run.iteration, index));
     let values: Vec<f64> = candidates.iter().map(|x| -cost(x)).collect();
     let ranked = best_first(&candidates, &values);
     run.update(&ranked).unwrap();
@@ -79,9 +79,9 @@ fn step(run: &mut Cma, cost: impl Fn(&[f64]) -> f64, seed: u64) -> f64 {
 
 /// Returns the number of evaluations until a candidate costs less than 1e-10; `u64::MAX` if the run ends before.
 fn evaluations(mut run: Cma, cost: impl Fn(&[f64]) -> f64, seed: u64) -> u64 {
-    while run.stop().is_none() {
+    while run.stop.is_none() {
         if step(&mut run, &cost, seed) < 1e-10 {
-            return u64::from(run.iteration()) * u64::from(run.population());
+            return u64::from(run.iteration) * u64::from(run.population);
         }
     }
     u64::MAX
@@ -121,7 +121,7 @@ fn restarting(restart: RestartKind, seed: u64) -> RestartedCma {
 
 /// Lets all runs learn from one iteration; `number` counts iterations over all runs.
 fn step_all(runs: &mut RestartedCma, seed: u64, number: u32) -> f64 {
-    let candidates = runs.candidates(|index| stream(seed, number, index));
+    let candidates = runs.current.candidates(|index| stream(seed, number, index));
     let values: Vec<f64> = candidates.iter().map(|x| -rastrigin(x)).collect();
     let ranked = best_first(&candidates, &values);
     runs.update(&ranked, &mut stream(seed, number, u32::MAX)).unwrap();
@@ -131,7 +131,7 @@ fn step_all(runs: &mut RestartedCma, seed: u64, number: u32) -> f64 {
 fn evaluations_with_restarts(restart: RestartKind, seed: u64) -> u64 {
     let (mut runs, mut count, mut number) = (restarting(restart, seed), 0, 0);
     loop {
-        count += u64::from(runs.population());
+        count += u64::from(runs.current.population);
         assert!(count < 1_000_000, "not solved");
         if step_all(&mut runs, seed, number) < 1e-10 {
             return count;
@@ -204,7 +204,7 @@ fn candidates_are_reproducible_and_have_the_covariance() {
     json["population"] = 100_000.into();
     let many: Cma = serde_json::from_value(json.clone()).unwrap();
     let points = many.candidates(|index| stream(4, 0, index));
-    let scale = run.step() * run.step();
+    let scale = run.step * run.step;
     let mean = |i: usize| json["mean"][i].as_f64().unwrap();
     let c = |i: usize, j: usize| json["covariance"][i * (i + 1) / 2 + j].as_f64().unwrap();
     for (i, j) in (0..4).flat_map(|i| (0..=i).map(move |j| (i, j))) {
@@ -219,7 +219,7 @@ fn a_state_read_from_text_continues_bit_for_bit() {
     for kind in [RestartKind::Ipop, RestartKind::Bipop] {
         let (mut straight, mut resumed) = (restarting(kind, 5), restarting(kind, 5));
         let mut number = 0;
-        while straight.restarts() < 3 {
+        while straight.restarts < 3 {
             let text = serde_json::to_string(&resumed).unwrap();
             resumed = serde_json::from_str(&text).unwrap();
             resumed.check().unwrap();
@@ -238,12 +238,12 @@ fn a_state_read_from_text_continues_bit_for_bit() {
 fn populations_follow_the_kind_of_restart() {
     let populations = |kind, count| {
         let mut runs = restarting(kind, 9);
-        let mut seen = vec![runs.population()];
+        let mut seen = vec![runs.current.population];
         for number in 0.. {
-            let restarts = runs.restarts();
+            let restarts = runs.restarts;
             step_all(&mut runs, 9, number);
-            if runs.restarts() > restarts {
-                seen.push(runs.population());
+            if runs.restarts > restarts {
+                seen.push(runs.current.population);
             }
             if seen.len() == count {
                 break;
@@ -259,7 +259,7 @@ fn populations_follow_the_kind_of_restart() {
     for number in 0..2000 {
         step_all(&mut alone, 9, number);
     }
-    assert!(alone.current().stop().is_some() && alone.restarts() == 0);
+    assert!(alone.current.stop.is_some() && alone.restarts == 0);
 }
 
 #[test]
@@ -267,12 +267,12 @@ fn each_criterion_reports_its_reason() {
     let end = |cost: fn(&[f64]) -> f64, seed| {
         let mut run = run(5, 1.0, 0.5, CovarianceShape::Full, true);
         let mut iterations = 0;
-        while run.stop().is_none() {
+        while run.stop.is_none() {
             step(&mut run, cost, seed);
             iterations += 1;
             assert!(iterations < 20_000);
         }
-        run.stop().unwrap()
+        run.stop.unwrap()
     };
     assert_eq!(end(|_| 0.0, 1), StopReason::EqualValues);
     assert_eq!(end(|_| f64::NAN, 1), StopReason::EqualValues);
@@ -289,7 +289,7 @@ fn each_criterion_reports_its_reason() {
     assert_eq!(end(noise, 1), StopReason::Stagnation);
     let mut run = Cma::new(vec![1.0; 5], 1e-17, 8, CovarianceShape::Full, true).unwrap();
     step(&mut run, sphere, 1);
-    assert_eq!(run.stop(), Some(StopReason::CoordinateWithoutEffect));
+    assert_eq!(run.stop, Some(StopReason::CoordinateWithoutEffect));
 }
 
 #[test]
@@ -358,12 +358,8 @@ fn the_bits_equal_the_recorded_ones() {
         for _ in 0..150 {
             step(&mut run, rosenbrock, 42);
         }
-        (
-            run.step().to_bits(),
-            run.mean()
-                .iter()
-                .fold(0, |hash: u64, x| hash.wrapping_mul(0x0100_0000_01B3) ^ x.to_bits()),
-        )
+        let mixed = |hash: u64, x: &f64| hash.wrapping_mul(0x0100_0000_01B3) ^ x.to_bits();
+        (run.step.to_bits(), run.mean.iter().fold(0, mixed))
     };
     let both = [bits(CovarianceShape::Full), bits(CovarianceShape::Diagonal)];
     assert_eq!(
@@ -387,7 +383,7 @@ fn a_search_whose_values_are_forgotten_does_not_end_because_they_are_equal() {
             }
         }
         run.check().expect("a state that can be resumed");
-        run.stop()
+        run.stop
     };
     assert_eq!(ends(false), Some(StopReason::EqualValues));
     assert_eq!(ends(true), None);

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::super::inner_search::{InnerSearch, serialize_search};
 use crate::check::{Invalid, within};
 use crate::evolve::plan::RunPlan;
-use crate::evolve::settings::PoetSettings;
+use crate::evolve::settings::{MccSettings, PoetSettings};
 use crate::evolve::stairs_tree::{Agent, StairsNode};
 use crate::evolve::strategy::{Strategy, StrategyState};
 use crate::rng::{Purpose, stream};
@@ -72,19 +72,6 @@ pub struct MccProgress<S> {
 }
 
 impl<S> MccProgress<S> {
-    /// Makes the progress at the beginning of a run, with its first stairs.
-    pub fn begin(root: StairsNode, beginning: FirstSearch<S>) -> Self {
-        Self {
-            beginning: Some(beginning),
-            rounds: 0,
-            nodes: vec![root],
-            uses: vec![0],
-            snakes: Vec::new(),
-            snake_turn: 0,
-            stairs_turn: 0,
-        }
-    }
-
     /// Returns the queue of stairs, as indices of `nodes`, the oldest first.
     pub fn active(&self) -> impl Iterator<Item = u32> {
         let nodes = (0..).zip(&self.nodes);
@@ -101,13 +88,13 @@ impl<S> MccProgress<S> {
         self.stairs_turn = passed(self.stairs_turn, stairs_children, stairs);
     }
 
-    /// Removes the oldest members of the queues until they have at most the given numbers of snakes and stairs. The turn stays with the
-    /// member whose turn it is.
-    pub fn shorten(&mut self, [most_snakes, most_stairs]: [usize; 2]) {
-        let too_many = self.snakes.len().saturating_sub(most_snakes);
+    /// Removes the oldest members of the queues until they have at most the numbers of snakes and stairs in the settings. The turn stays
+    /// with the member whose turn it is.
+    pub fn shorten(&mut self, settings: &MccSettings) {
+        let too_many = self.snakes.len().saturating_sub(settings.snake_queue as usize);
         self.snakes.drain(..too_many);
         let active = self.active().count();
-        let archived = active.saturating_sub(most_stairs);
+        let archived = active.saturating_sub(settings.stairs_queue as usize);
         let oldest = self.nodes.iter_mut().filter(|node| node.archived.is_none());
         oldest.take(archived).for_each(|node| node.archived = Some(self.rounds));
         let moved = |turn: u32, removed: usize, left: usize| {
@@ -124,7 +111,8 @@ impl<S> MccProgress<S> {
     {
         let saved: MccProgress<StrategyState> = state.read()?;
         saved.check(plan, finished)?;
-        let beginning = saved.beginning.map(|beginning| {
+        let MccProgress { beginning, rounds, nodes, uses, snakes, snake_turn, stairs_turn } = saved;
+        let beginning = beginning.map(|beginning| {
             let FirstSearch { search, finished, restarts, idle } = beginning;
             let inside = |error: Invalid| error.inside("beginning");
             within("idle", idle, 0..=PATIENCE).map_err(inside)?;
@@ -132,15 +120,8 @@ impl<S> MccProgress<S> {
             let search = InnerSearch::resumed(&plan, finished, &search).map_err(inside)?;
             Ok(FirstSearch { search, finished, restarts, idle })
         });
-        Ok(Self {
-            beginning: beginning.transpose()?,
-            rounds: saved.rounds,
-            nodes: saved.nodes,
-            uses: saved.uses,
-            snakes: saved.snakes,
-            snake_turn: saved.snake_turn,
-            stairs_turn: saved.stairs_turn,
-        })
+        let beginning = beginning.transpose()?;
+        Ok(Self { beginning, rounds, nodes, uses, snakes, snake_turn, stairs_turn })
     }
 }
 
@@ -155,7 +136,7 @@ impl MccProgress<StrategyState> {
             node.check(index, self.rounds, plan).map_err(|error| error.inside("nodes"))?;
         }
         for snake in &self.snakes {
-            snake.check(plan).map_err(|error| error.inside("snakes"))?;
+            plan.check_genome(&snake.genome).map_err(|error| error.inside("snakes"))?;
         }
         let active = self.active().count();
         within("active", active, 1..=100)?;

@@ -4,21 +4,18 @@ use std::sync::Arc;
 
 use super::*;
 use crate::evolve::plan::Founder;
-use crate::evolve::settings::{Settings, StrategyKind};
+use crate::evolve::settings::StrategyKind;
 use crate::evolve::strategies::cma_es::CmaEs;
-use crate::genome::ControllerKind;
+use crate::evolve::strategies::fixtures::{self, assert_resumes};
 use crate::score::Fitness;
 use crate::world::Disqualification;
 
 fn plan() -> RunPlan {
-    let mut settings = Settings::default();
-    settings.evolution.strategy = StrategyKind::Mcc;
-    settings.trial.fitness = Fitness::Share;
-    settings.genome.controller = ControllerKind::Gait;
-    let mcc = &mut settings.evolution.mcc;
-    (mcc.snake_queue, mcc.first_snakes, mcc.stairs_queue) = (20, 10, 6);
-    settings.check().expect("they go together");
-    RunPlan::new("test", 1, settings)
+    fixtures::plan(StrategyKind::Mcc, |settings| {
+        settings.trial.fitness = Fitness::Share;
+        let mcc = &mut settings.evolution.mcc;
+        (mcc.snake_queue, mcc.first_snakes, mcc.stairs_queue) = (20, 10, 6);
+    })
 }
 
 /// Returns an evaluation whose share of the way falls with the distance of a gene from a target, which follows from the rise of the stairs.
@@ -126,22 +123,10 @@ fn a_disqualified_snake_climbs_nothing() {
 
 #[test]
 fn a_resumed_run_goes_on_with_the_same_bits() {
-    let mut expected = Mcc::<CmaEs>::begin(&plan());
-    let mut resumed: Option<Mcc<CmaEs>> = None;
     let mut phases = [false; 2];
-    for finished in 0..30 {
-        let text = ron::to_string(&expected.state()).expect("written");
-        let state: StrategyState = ron::from_str(&text).expect("read");
-        let mcc = Mcc::<CmaEs>::resume(&plan(), finished, &state).expect("its own state");
+    assert_resumes(Mcc::<CmaEs>::begin(&plan()), &plan(), 0..30, advance, |mcc| {
         phases[usize::from(mcc.progress.beginning.is_some())] = true;
-        assert!(mcc.state() == expected.state());
-        if let Some(resumed) = &mut resumed {
-            advance(resumed);
-        }
-        assert!(resumed.as_ref().is_none_or(|before| before.state() == expected.state()));
-        resumed = Some(mcc);
-        advance(&mut expected);
-    }
+    });
     assert_eq!(phases, [true; 2]);
 }
 
@@ -165,7 +150,7 @@ fn each_snake_has_children_in_turn_while_others_come_and_go() {
             let newest = mcc.progress.snakes[0].clone();
             mcc.progress.snakes.push(newest);
         }
-        mcc.progress.shorten([queue, 6]);
+        mcc.progress.shorten(&mcc.plan.settings.evolution.mcc);
         oldest += 2;
     }
     // The snakes are numbered in the order in which they entered. Turns go from the oldest to the newest snake, and then back to the

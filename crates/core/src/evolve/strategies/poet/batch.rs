@@ -32,7 +32,10 @@ impl<S: Strategy> Poet<S> {
     pub(super) fn next_batch(&self) -> Vec<Attempt<PoetRole>> {
         let perturbed = self.settings.perturbed;
         match &self.progress.phase {
-            Phase::Learn { .. } => self.learners(),
+            Phase::Learn { .. } => {
+                let pairs = self.progress.pairs.iter();
+                pairs.flat_map(|pair| self.samples(&pair.search, pair.node, None)).collect()
+            }
             Phase::Measure => self.measured(),
             Phase::Tune { proposals } => {
                 proposals.iter().flat_map(|proposal| self.fine_tuned(proposal)).collect()
@@ -62,11 +65,6 @@ impl<S: Strategy> Poet<S> {
                     .collect()
             }
         }
-    }
-
-    fn learners(&self) -> Vec<Attempt<PoetRole>> {
-        let pairs = self.progress.pairs.iter();
-        pairs.flat_map(|pair| self.samples(&pair.search, pair.node, None)).collect()
     }
 
     /// Returns the next candidates of a search, on the stairs with the index `node`.

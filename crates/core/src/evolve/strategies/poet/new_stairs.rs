@@ -101,18 +101,14 @@ impl<S: Strategy> Poet<S> {
         is_new_challenge: bool,
     ) {
         let number = self.progress.nodes.len() as u32;
-        let round = self.progress.rounds + 1;
         let search = self.search(number, 0, Some(&agent.genome));
         self.progress.nodes.push(StairsNode {
-            stairs: child.stairs,
             parent: Some(child.parent),
-            born: round,
-            archived: None,
-            solved: None,
+            born: self.progress.rounds + 1,
             is_new_challenge,
             agent: Some(agent),
             score,
-            trials: 0,
+            ..StairsNode::new(child.stairs)
         });
         self.progress.rows.push(row);
         self.progress.pairs.push(Pair::new(number, search));

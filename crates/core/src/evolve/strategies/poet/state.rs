@@ -135,20 +135,6 @@ pub struct PoetProgress<S> {
 }
 
 impl<S> PoetProgress<S> {
-    /// Makes the progress at the beginning of a run, with one pair.
-    pub fn begin(root: StairsNode, pair: Pair<S>, iterations: u32) -> Self {
-        Self {
-            phase: Phase::Learn { left: iterations },
-            rounds: 0,
-            transfers_done: 0,
-            nodes: vec![root],
-            pairs: vec![pair],
-            panel: Vec::new(),
-            rows: vec![Vec::new()],
-            transfers: Vec::new(),
-        }
-    }
-
     pub fn node(&self, index: u32) -> Option<&StairsNode> {
         self.nodes.get(index as usize)
     }
@@ -175,36 +161,20 @@ impl<S> PoetProgress<S> {
     where
         S: Strategy,
     {
-        let saved: PoetProgress<StrategyState> = state.read()?;
+        let mut saved: PoetProgress<StrategyState> = state.read()?;
         saved.check(plan, finished)?;
         let mut pairs = Vec::new();
-        for (index, pair) in saved.pairs.into_iter().enumerate() {
+        for (index, pair) in std::mem::take(&mut saved.pairs).into_iter().enumerate() {
+            let Pair { node, search, finished, restarts, recent, stale, challenger } = pair;
             // A search that has begun does not depend on the genome around which it began; the agent stands in for that genome.
-            let around = saved.nodes.get(pair.node as usize).and_then(|node| node.agent.as_ref());
-            let around = around.map(|agent| &agent.genome);
-            let plan = search_plan(plan, pair.node, pair.restarts, around);
-            let search = InnerSearch::resumed(&plan, pair.finished, &pair.search)
+            let plan = search_plan(plan, node, restarts, saved.agent(node));
+            let search = InnerSearch::resumed(&plan, finished, &search)
                 .map_err(|error| error.inside(&format!("pairs[{index}].search")))?;
-            pairs.push(Pair {
-                node: pair.node,
-                search,
-                finished: pair.finished,
-                restarts: pair.restarts,
-                recent: pair.recent,
-                stale: pair.stale,
-                challenger: pair.challenger,
-            });
+            pairs.push(Pair { node, search, finished, restarts, recent, stale, challenger });
         }
-        Ok(Self {
-            phase: saved.phase,
-            rounds: saved.rounds,
-            transfers_done: saved.transfers_done,
-            nodes: saved.nodes,
-            pairs,
-            panel: saved.panel,
-            rows: saved.rows,
-            transfers: saved.transfers,
-        })
+        let PoetProgress { phase, rounds, transfers_done, nodes, panel, rows, transfers, .. } =
+            saved;
+        Ok(Self { phase, rounds, transfers_done, nodes, pairs, panel, rows, transfers })
     }
 }
 
@@ -275,24 +245,16 @@ impl PoetProgress<StrategyState> {
         plan: &RunPlan,
     ) -> Result<(), Invalid> {
         self.check_place(pair.node)?;
-        let is_twice = self.pairs.iter().take(index).any(|other| other.node == pair.node);
-        if is_twice {
-            return Err(Invalid::new(
-                "node",
-                pair.node,
-                "another one than that of the pairs before",
-            ));
+        if self.pairs[..index].iter().any(|other| other.node == pair.node) {
+            let allowed = "another one than that of the pairs before";
+            return Err(Invalid::new("node", pair.node, allowed));
         }
         within("recent", pair.recent.len(), 0..=RECENT)?;
         pair.recent.iter().try_for_each(|score| check_score("recent", *score))?;
         within("finished", pair.finished, 0..=10_000)?;
-        match &pair.challenger {
-            Some((agent, score)) => {
-                check_score("challenger", *score)?;
-                agent.check(plan)
-            }
-            None => Ok(()),
-        }
+        let Some((agent, score)) = &pair.challenger else { return Ok(()) };
+        check_score("challenger", *score)?;
+        plan.check_genome(&agent.genome)
     }
 
     fn check_moves<'a>(

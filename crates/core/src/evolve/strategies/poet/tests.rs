@@ -1,23 +1,18 @@
 //! Tests of POET with made-up evaluations.
 
 use super::*;
-use crate::evolve::settings::{Settings, StrategyKind};
+use crate::evolve::settings::StrategyKind;
 use crate::evolve::strategies::cma_es::CmaEs;
-use crate::genome::ControllerKind;
+use crate::evolve::strategies::fixtures::{self, assert_resumes};
 use crate::score::Fitness;
 use crate::world::Disqualification;
 
 fn plan() -> RunPlan {
-    let mut settings = Settings::default();
-    settings.evolution.strategy = StrategyKind::Poet;
-    settings.trial.fitness = Fitness::Share;
-    settings.genome.controller = ControllerKind::Gait;
-    settings.evolution.poet.pairs = 4;
-    settings.evolution.poet.learn_generations = 6;
-    settings.evolution.poet.transfers = 2;
-    settings.evolution.poet.children = 24;
-    settings.check().expect("they go together");
-    RunPlan::new("test", 1, settings)
+    fixtures::plan(StrategyKind::Poet, |settings| {
+        settings.trial.fitness = Fitness::Share;
+        let poet = &mut settings.evolution.poet;
+        (poet.pairs, poet.learn_generations, poet.transfers, poet.children) = (4, 6, 2, 24);
+    })
 }
 
 /// Returns an evaluation whose share of the way falls with the distance of a gene from a target, which follows from the rise of the stairs.
@@ -114,26 +109,13 @@ fn an_agent_that_climbs_other_stairs_better_moves_there() {
 
 #[test]
 fn a_resumed_run_goes_on_with_the_same_bits_from_any_phase() {
-    let (mut expected, mut finished) = run(4);
-    forget_an_agent(&mut expected);
-    finished += 1;
-    let mut resumed: Option<Poet<CmaEs>> = None;
+    let (mut poet, generations) = run(4);
+    forget_an_agent(&mut poet);
     let mut phases = std::collections::BTreeSet::new();
-    for _ in 0..120 {
-        let state = expected.state();
-        let text = ron::to_string(&state).expect("written");
-        let state: StrategyState = ron::from_str(&text).expect("read");
-        let poet = Poet::<CmaEs>::resume(&plan(), finished, &state).expect("its own state");
+    let finished = generations + 1..generations + 121;
+    assert_resumes(poet, &plan(), finished, advance, |poet| {
         phases.insert(format!("{:?}", poet.progress.phase)[..5].to_owned());
-        assert!(poet.state() == expected.state());
-        if let Some(resumed) = &mut resumed {
-            advance(resumed);
-        }
-        assert!(resumed.as_ref().is_none_or(|before| before.state() == expected.state()));
-        resumed = Some(poet);
-        advance(&mut expected);
-        finished += 1;
-    }
+    });
     assert_eq!(phases.len(), 7, "{phases:?}");
 }
 

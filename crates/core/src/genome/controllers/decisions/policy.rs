@@ -42,8 +42,8 @@ impl Policy {
         };
         let checked = match self {
             Self::Table(table) => table.check(TABLE_STATES, POSTURES.len()),
-            Self::Xcs(rules) => same(rules.situation_bits(), rules.actions()),
-            Self::Zcs(rules) => same(rules.situation_bits(), rules.actions()),
+            Self::Xcs(rules) => same(rules.situation_bits, rules.actions),
+            Self::Zcs(rules) => same(rules.situation_bits, rules.actions),
         };
         checked.map_err(|error| error.inside("policy"))
     }
@@ -52,7 +52,7 @@ impl Policy {
     pub(super) fn hash(&self, hash: &mut Xxh3Default) {
         match self {
             Self::Table(table) => {
-                for state in 0..table.states() {
+                for state in 0..table.states {
                     for value in table.values(state) {
                         hash.update(&value.to_bits().to_le_bytes());
                     }
@@ -63,7 +63,7 @@ impl Policy {
             }
             Self::Xcs(rules) => hash_xcs(rules, hash),
             Self::Zcs(rules) => {
-                for rule in rules.rules() {
+                for rule in &rules.rules {
                     hash_rule(&rule.condition, rule.action, hash);
                     hash.update(&rule.strength.to_bits().to_le_bytes());
                 }
@@ -74,7 +74,7 @@ impl Policy {
 
 /// Adds the bits of all rules of an XCS to a hash.
 pub fn hash_xcs(rules: &Xcs, hash: &mut Xxh3Default) {
-    for rule in rules.rules() {
+    for rule in &rules.rules {
         hash_rule(&rule.condition, rule.action, hash);
         for number in [rule.prediction, rule.error, rule.fitness] {
             hash.update(&number.to_bits().to_le_bytes());

@@ -20,8 +20,7 @@ fn a_dropped_block_loses_in_the_air_nothing_and_at_the_impact_what_its_bounce_le
         let mut plan = block(Surface { bounce, ..Default::default() });
         plan.physics.steps_per_s = 240;
         let mut simulation = Simulation::new(&plan);
-        let above = body(&mut simulation).at + Vector::new(0.0, 0.0, 1.0);
-        body(&mut simulation).at = above;
+        body(&mut simulation).at.z += 1.0;
         let before_j = simulation.energy_lost().total_j;
         run(&mut simulation, 0.4);
         let falling_j = simulation.energy_lost().total_j - before_j;
@@ -37,9 +36,7 @@ fn a_dropped_block_loses_in_the_air_nothing_and_at_the_impact_what_its_bounce_le
 in_both_engines!(frictionless_joints_lose_nothing_of_the_work_that_drives_them);
 fn frictionless_joints_lose_nothing_of_the_work_that_drives_them() {
     let (_, mut simulation) = weightless(2);
-    for _ in 0..20 {
-        simulation.step(&[JointTorque { bend_nm: 4.0, twist_nm: 0.0 }]).expect("healthy");
-    }
+    simulation.take_steps(20, &[JointTorque { bend_nm: 4.0, twist_nm: 0.0 }]);
     let work_j = simulation.balance.joint_work_j as f32;
     let lost_j = simulation.energy_lost().total_j;
     assert!(work_j > 0.5, "{work_j} J");
@@ -51,9 +48,7 @@ fn holding_power_counts_the_square_of_each_torque_and_never_as_work() {
     let spent = |power_w: f32, bend_nm: f32, twist_nm: f32| {
         let (_, mut simulation) = weightless(2);
         simulation.plan.body.holding_w_per_n2m2 = power_w / 1.0e6;
-        for _ in 0..120 {
-            simulation.step(&[JointTorque { bend_nm, twist_nm }]).expect("healthy");
-        }
+        simulation.take_steps(120, &[JointTorque { bend_nm, twist_nm }]);
         (simulation.effort().energy_j, simulation.balance.motion_j, simulation.poses().last())
     };
     let without = spent(0.0, 4.0, 0.0);
@@ -74,9 +69,7 @@ fn holding_power_counts_the_square_of_each_torque_and_never_as_work() {
 in_both_engines!(a_joint_stopped_by_its_limits_loses_the_work_that_drove_it);
 fn a_joint_stopped_by_its_limits_loses_the_work_that_drove_it() {
     let (_, mut simulation) = weightless(2);
-    for _ in 0..240 {
-        simulation.step(&[JointTorque { bend_nm: 4.0, twist_nm: 0.0 }]).expect("healthy");
-    }
+    simulation.take_steps(240, &[JointTorque { bend_nm: 4.0, twist_nm: 0.0 }]);
     // The torque drives the joint to its limit of 1 rad, where it rests.
     let lost = simulation.energy_lost();
     assert!((lost.total_j - 4.0).abs() < 0.2 && lost.elsewhere_j() == lost.total_j, "{lost:?}");

@@ -95,7 +95,7 @@ fn floating_pair(
 
 fn run_with(simulation: &mut Simulation, torque: JointTorque, seconds: f32) {
     let steps = (seconds / simulation.plan.physics.step_s()).round() as u32;
-    (0..steps).for_each(|_| simulation.step(&[torque]).expect("healthy"));
+    simulation.take_steps(steps, &[torque]);
 }
 
 /// Makes the limbs of a pair spin in opposite directions about the long axis, at this rate in rad/s.
@@ -199,8 +199,7 @@ fn a_hard_contact_corrects_its_share_of_a_penetration_in_a_sixtieth_of_a_second(
                 Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
             // Rapier corrects a penetration at 3 m/s at most.
             let sunk_m = 0.035;
-            let place = body(&mut simulation).at - Vector::new(0.0, 0.0, sunk_m);
-            body(&mut simulation).at = place;
+            body(&mut simulation).at.z -= sunk_m;
             run(&mut simulation, 2.0 / 60.0);
             let left_m = 0.5 - body(&mut simulation).at.z;
             let expected_m = sunk_m * (1.0 - soft_erp) * (1.0 - soft_erp);
@@ -230,8 +229,7 @@ fn an_impact_bounces_from_the_bounce_velocity_on() {
             let surface = Surface { bounce: 0.8, bounce_velocity_m_s, ..Default::default() };
             let mut simulation =
                 Simulation::new(&WorldPlan { physics: physics.clone(), ..block(surface) });
-            let above = body(&mut simulation).at + Vector::new(0.0, 0.0, 1.0);
-            body(&mut simulation).at = above;
+            body(&mut simulation).at.z += 1.0;
             let steps = (0.8 * physics.steps_per_s as f32) as u32;
             let speeds = (0..steps).map(|_| {
                 simulation.step(&[]).expect("healthy");

@@ -70,9 +70,7 @@ fn a_torque_twists_an_arm_about_its_own_length() {
         let mut plan = tree(&[beside(Vector::new(0.5 * side, 0.3, 0.1), side)]);
         plan.physics.gravity_m_s2 = 0.0;
         let mut simulation = hanging(&plan);
-        for _ in 0..30 {
-            simulation.step(&[JointTorque { bend_nm: 0.0, twist_nm: 2.0 }]).expect("healthy");
-        }
+        simulation.take_steps(30, &[JointTorque { bend_nm: 0.0, twist_nm: 2.0 }]);
         let state = simulation.joint_states().next().expect("a joint");
         // The inertia of the arm about its length is 5 kg · (1 m² + 1 m²) / 12.
         let expected_rad_s = 2.0 * 0.5 / (5.0 / 6.0);
@@ -92,9 +90,7 @@ fn an_arm_stops_at_the_limits_of_its_joint() {
         plan.physics.gravity_m_s2 = 0.0;
         plan.body.joints[0].damping_nms_per_rad = 4.0;
         let mut simulation = hanging(&plan);
-        for _ in 0..300 {
-            simulation.step(&[JointTorque { bend_nm, twist_nm }]).expect("healthy");
-        }
+        simulation.take_steps(300, &[JointTorque { bend_nm, twist_nm }]);
         let state = simulation.joint_states().next().expect("a joint");
         // The limits are 1 rad and 0.9 rad.
         let at_limit = |torque_nm: f32, limit_rad: f32| {
@@ -121,9 +117,7 @@ fn torques_between_parts_of_a_tree_leave_its_momentum_as_it_is() {
     let torques: Vec<JointTorque> = (0..4)
         .map(|joint| JointTorque { bend_nm: 3.0 - joint as f32, twist_nm: joint as f32 - 1.0 })
         .collect();
-    for _ in 0..30 {
-        simulation.step(&torques).expect("healthy");
-    }
+    simulation.take_steps(30, &torques);
     let (momentum, mut turning, mut turned) = (momentum(&simulation), Vector::ZERO, 0.0);
     for (part, plan) in simulation.parts().iter().zip(&simulation.body().parts) {
         let rate = part.turn.inverse() * part.angular;

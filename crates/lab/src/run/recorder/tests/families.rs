@@ -36,15 +36,7 @@ fn plan_of((controller, strategy): (ControllerKind, StrategyKind)) -> RunPlan {
 #[test]
 fn every_family_has_the_same_run_hash_on_one_two_and_four_threads() {
     for family in FAMILIES {
-        let hash = |threads| {
-            let mut experiment = Experiment::new(plan_of(family));
-            let evaluator = LocalPool::new(threads).expect("threads");
-            while !experiment.is_over() {
-                let control = RunControl::default();
-                experiment.run_generation(&evaluator, &control).expect("not cancelled");
-            }
-            experiment.run_hash()
-        };
+        let hash = |threads| finish(Experiment::new(plan_of(family)), threads).run_hash();
         let one = hash(1);
         assert_eq!([hash(2), hash(4)], [one; 2], "{family:?}");
     }
@@ -59,8 +51,7 @@ fn every_family_continues_bit_for_bit_after_a_stop_within_a_generation() {
         for _ in 0..20 {
             let stop_after = rng.random_range(1..32_u32);
             let saves = tempfile::tempdir().expect("a folder");
-            let saves = SavesFolder::find(Some(saves.path()));
-            let source = || RunSource::in_saves(&saves, plan.clone(), ExistingRun::Keep);
+            let source = || source_of(&plan, saves.path());
             let mut first = source().open("a test").expect("opened");
             let (evaluator, control) = (LocalPool::new(1).expect("threads"), RunControl::default());
             let evaluated = AtomicU32::new(0);
@@ -96,12 +87,9 @@ fn a_run_of_rules_stopped_within_a_generation_takes_over_the_same_waves() {
     plan.settings.trial.start_y_m = -2.0;
     assert_continues_after_any_stop(&plan);
     let expected = uninterrupted(&plan);
-    let source = |saves: &Path| {
-        RunSource::in_saves(&SavesFolder::find(Some(saves)), plan.clone(), ExistingRun::Keep)
-    };
     for known in [1, 4, 8] {
         let saves = tempfile::tempdir().expect("a folder");
-        let mut run = source(saves.path()).open("a test").expect("opened");
+        let mut run = source_of(&plan, saves.path()).open("a test").expect("opened");
         evolve(&mut run, 2);
         // The uses of waves in the third generation come from the evaluations that were saved before the stop.
         let (evaluator, control) = (LocalPool::new(1).expect("threads"), RunControl::default());
@@ -114,7 +102,7 @@ fn a_run_of_rules_stopped_within_a_generation_takes_over_the_same_waves() {
         let report = run.experiment.run_generation_recording(&evaluator, &control, note);
         report.expect("not cancelled");
         drop(run);
-        let mut again = source(saves.path()).open("a test").expect("opened");
+        let mut again = source_of(&plan, saves.path()).open("a test").expect("opened");
         assert_eq!(again.reports.len(), 2);
         evolve(&mut again, 6);
         assert_eq!(again.experiment.run_hash(), expected.run_hash(), "{known} known");
