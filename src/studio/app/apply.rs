@@ -135,7 +135,9 @@ impl StudioParams<'_, '_> {
                 }
             }
             Command::Library(LibraryCommand::SaveSnake) => {
-                library.save(&stage.selected().ok_or("There is no snake on the stage.")?)?;
+                let selected = stage.selected().ok_or("There is no snake on the stage.")?;
+                library.save(&selected)?;
+                self.bodies.note_saved(&selected);
             }
             Command::Library(command) => {
                 stage.present_others(library.apply(command, history, notices)?, notices);
@@ -180,6 +182,11 @@ impl StudioParams<'_, '_> {
                 }
                 let show = self.exams.apply(command, stage.selected().as_ref())?;
                 stage.present_others(show, notices);
+            }
+            Command::Body(BodyCommand::Save) => {
+                let edited = self.bodies.to_save()?;
+                library.save(&edited)?;
+                self.bodies.note_saved(&edited);
             }
             Command::Body(command) => {
                 if *command == BodyCommand::Edit {

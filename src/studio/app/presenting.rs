@@ -37,6 +37,7 @@ fn present(
     mut notices: ResMut<Notices>,
 ) {
     turns.is_held = workspace.is_black();
+    following.is_held = workspace.is_menu_open;
     let is_presenting = workspace.is_presenting;
     if is_presenting == before.is_some() {
         return;

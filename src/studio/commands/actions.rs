@@ -178,8 +178,8 @@ pub(crate) fn actions() -> &'static [Action] {
                 Window(WindowCommand::ToggleTorques) => {
                     "Torques over the whole trial, below the player"
                 }
-                Window(WindowCommand::Enlarge) => {
-                    "A quarter larger; after the largest, the usual size"
+                Window(WindowCommand::ToggleLarger) => {
+                    "All texts a quarter larger, or back to the usual size"
                 }
                 Command::Library(LibraryCommand::SaveSnake) => {
                     "The selected snake on the stage, into the library"
@@ -289,7 +289,7 @@ fn rows(menu: Menu) -> Vec<ActionRow> {
             ("Torques over time", &[], Window(WindowCommand::ToggleTorques)),
             ("Next picture quality", &["A"], View(ViewCommand::NextQuality)),
             ("Dark theme", &["T"], View(ViewCommand::ToggleTheme)),
-            ("Larger for a projector", &[], Window(WindowCommand::Enlarge)),
+            ("Larger for a projector", &[], Window(WindowCommand::ToggleLarger)),
             ("Larger panels", &["Ctrl +", "Ctrl ="], scale(true)),
             ("Smaller panels", &["Ctrl -"], scale(false)),
             ("Reset panel size", &["Ctrl 0"], Window(WindowCommand::ResetScale)),

@@ -283,8 +283,8 @@ pub(super) enum WindowCommand {
         /// Whether the scale becomes larger rather than smaller.
         larger: bool,
     },
-    /// Multiply the UI scale by 1.25, or reset it if it cannot become larger.
-    Enlarge,
+    /// Make all texts a quarter larger than usual, or reset them.
+    ToggleLarger,
     /// Reset the UI scale to 1.
     ResetScale,
     /// Show or hide the torques of each joint over time, in the player.
@@ -390,6 +390,8 @@ pub(super) enum BodyCommand {
     Redo,
     /// Show the edited body beside the original.
     Preview,
+    /// Save the edited snake in the library.
+    Save,
     /// Adapt the gait to the edited body by a few evaluations, in the background.
     Tune,
     /// Stop adapting the gait, and keep the best one found.

@@ -115,10 +115,13 @@ impl BodyPanel {
         let name = format!("Body of {}", edited.original.name());
         title_and(ui, &name, |ui| {
             let closes = "Show the original alone. The changes are lost";
-            let [can_undo, can_redo] = edited.steps.map(|can| can && edited.tuning.is_none());
+            let [can_undo, can_redo, can_save] =
+                [edited.steps[0], edited.steps[1], edited.is_unsaved]
+                    .map(|can| can && edited.tuning.is_none());
             // The buttons are added from right to left.
             for (label, hint, is_on, command) in [
                 ("Close", closes, true, BodyCommand::Close),
+                ("Save", "Save the changed snake in the library", can_save, BodyCommand::Save),
                 ("Redo", "Redo the latest undone change", can_redo, BodyCommand::Redo),
                 ("Undo", "Undo the latest change of the body", can_undo, BodyCommand::Undo),
             ] {

@@ -190,7 +190,7 @@ fn draw(
     panels.timeline.offers_why = !matches!(*on_stage.mode, StageMode::Generation { .. });
     let is_on = |command: &Command| match command {
         Command::Window(WindowCommand::ToggleTorques) => Some(shows_torques),
-        Command::Window(WindowCommand::Enlarge) => Some(is_larger),
+        Command::Window(WindowCommand::ToggleLarger) => Some(is_larger),
         &FOLLOW_COMMAND => on_stage.following.offered(&data.run),
         _ => on_stage.is_on(command, *data.theme),
     };
@@ -260,6 +260,7 @@ fn draw(
         }
         area.set(&context, stage, cards, messages_room);
     }
+    workspace.is_menu_open = egui::Popup::is_any_open(&context);
     match workspace.modal() {
         Some(Modal::Keys) => key_overlay(&context),
         Some(Modal::CommandPalette) => {

@@ -22,8 +22,11 @@ pub(crate) fn unfinished(
     let exam = exams.progress().map(|(name, [done, all])| {
         format!("{name} is being examined on other stairs: {done} of {all} trials are done.")
     });
-    let body = bodies.edited().filter(|of| of.steps != [false; 2] || of.tuning.is_some());
-    let body = body.map(|of| format!("The changed body of {} is not saved.", of.original.name()));
+    let body = bodies.edited().filter(|of| of.is_unsaved || of.tuning.is_some());
+    let body = body.map(|of| {
+        let name = of.original.name();
+        format!("The changed body of {name} is not saved: the panel Body has a button for that.")
+    });
     let batches = library.under_way().map(|(words, _)| format!("{words} saves is in progress."));
     share.into_iter().chain(exam).chain(body).chain(batches).collect()
 }

@@ -29,6 +29,8 @@ fn within(tag: egui::Rect, stage: egui::Rect) -> egui::Rect {
 
 /// Distance of a tag from heads and from other tags, in points.
 const CLEAR: f32 = theme::GAP / 2.0;
+/// Width of the line from a tag to its head, in points.
+const TAG_LINE: f32 = 2.0;
 /// Sides of a head at which its tag can be, in the order in which they are tried: above, to the left, to the right, and below.
 const SIDES: [[f32; 2]; 4] = [[0.0, -1.0], [-1.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
@@ -87,19 +89,28 @@ fn draw(
     let margin = egui::vec2(theme::GAP * 1.5, theme::GAP * 0.75);
     let (tags, texts): (Vec<_>, Vec<_>) = racing()
         .filter_map(|lane| {
-            let (head, text) = if are_many {
-                let name = lane.staged.label();
-                (view.limb(lane, 0)?, format!("{name}  {}", lane.place_in_words()))
+            let (head, text, color) = if are_many {
+                let text = format!("{}  {}", lane.staged.label(), lane.place_in_words());
+                (view.limb(lane, 0)?, text, Some(palette.lane_color(lane.number)))
             } else {
                 let at = view.point_of(fitness_line_ends(lane)[1])?;
                 let text = format!("middle block at {} m", decimals(lane.drawn_middle().y, 2));
-                (egui::Rect::from_pos(at), text)
+                (egui::Rect::from_pos(at), text, None)
             };
             let text = painter.layout_no_wrap(text, font.clone(), palette.text);
-            Some(((head, text.size() + margin), text))
+            let dot = color.map_or(0.0, |_| theme::LANE_DOT + theme::GAP / 2.0);
+            Some(((head, text.size() + margin + egui::vec2(dot, 0.0)), (text, color)))
         })
         .unzip();
-    for (rect, text) in places(&tags, &mut sides, stage).into_iter().zip(texts) {
+    let placed = places(&tags, &mut sides, stage);
+    // A line to its head in the colour of the lane tells whose tag it is, where snakes stand close to each other.
+    for ((rect, (head, _)), (_, color)) in placed.iter().zip(&tags).zip(&texts) {
+        if let Some(color) = *color {
+            let ends = [rect.clamp(head.center()), head.clamp(rect.center())];
+            painter.line_segment(ends, egui::Stroke::new(TAG_LINE, color));
+        }
+    }
+    for (rect, (text, color)) in placed.into_iter().zip(texts) {
         painter.rect(
             rect,
             rect.height() / 2.0,
@@ -107,7 +118,14 @@ fn draw(
             egui::Stroke::new(1.0, palette.field_hovered),
             egui::StrokeKind::Inside,
         );
-        painter.galley(rect.center() - text.size() / 2.0, text, palette.text);
+        let mut at = rect.left_center() + egui::vec2(margin.x / 2.0, -text.size().y / 2.0);
+        if let Some(color) = color {
+            let radius = theme::LANE_DOT / 2.0;
+            let dot = egui::pos2(at.x + radius, rect.center().y);
+            painter.circle_filled(dot, radius, color);
+            at.x += theme::LANE_DOT + theme::GAP / 2.0;
+        }
+        painter.galley(at, text, palette.text);
     }
     Ok(())
 }

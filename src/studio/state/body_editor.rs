@@ -42,6 +42,10 @@ struct Edited {
     future: Vec<Genome>,
     /// Number of a block that the last command set. Further changes of this number are part of the same undo step.
     last_set: Option<(usize, BlockSize)>,
+    /// Edited snake as the stage last showed it.
+    previewed: Option<StagedChampion>,
+    /// Genome of the edited snake as it was last saved, if it was.
+    saved: Option<Genome>,
     /// Time of the last change of the body, until its preview begins.
     changed_at: Option<Instant>,
     /// Evaluation of the edited snake for the preview, in progress.
@@ -64,6 +68,8 @@ pub(crate) struct EditedBody<'a> {
     pub original: &'a StagedChampion,
     /// Whether there is a change to undo, and one to redo.
     pub steps: [bool; 2],
+    /// Whether the body was changed, and is not saved as it is now.
+    pub is_unsaved: bool,
     /// Number of finished evaluations and of all evaluations of the tuning, if one is in progress.
     pub tuning: Option<[usize; 2]>,
     /// Reason why the body cannot be simulated, if there is one.
@@ -79,6 +85,7 @@ impl BodyEditor {
             body: edited.original.trial().agent.body_plan(&edited.genome),
             original: &edited.original,
             steps: [!edited.past.is_empty(), !edited.future.is_empty()],
+            is_unsaved: !edited.past.is_empty() && edited.saved.as_ref() != Some(&edited.genome),
             tuning: edited.tuning.as_ref().map(|task| [task.done(), task.total()]),
             problem: edited.check().err(),
         })
@@ -87,6 +94,26 @@ impl BodyEditor {
     /// Returns the reason why the body of a snake cannot be edited, if there is one.
     pub fn refusal(staged: &StagedChampion) -> Option<String> {
         own_blocks(staged).err()
+    }
+
+    /// Returns the edited snake, to save it.
+    ///
+    /// # Errors
+    /// The body is not simulated yet, or cannot be simulated.
+    pub fn to_save(&self) -> Result<StagedChampion, String> {
+        let edited = self.edited.as_ref().ok_or("No body is being edited.")?;
+        let previewed = edited.previewed.as_ref();
+        let is_present = |of: &&StagedChampion| of.champion().genome == edited.genome;
+        let missing = "The changed body is not simulated yet: save it in a moment.";
+        Ok(previewed.filter(is_present).ok_or(missing)?.clone())
+    }
+
+    /// Notes that a snake of the stage was saved, which may be the edited one.
+    pub fn note_saved(&mut self, staged: &StagedChampion) {
+        let genome = &staged.champion().genome;
+        if let Some(edited) = self.edited.as_mut().filter(|edited| edited.genome == *genome) {
+            edited.saved = Some(genome.clone());
+        }
     }
 
     /// Executes a command. The command to edit begins with the selected champion of the stage. Returns what to show on
@@ -117,7 +144,8 @@ impl BodyEditor {
             _ if edited.tuning.is_some() => {
                 return Err("The gait is being tuned: wait, or cancel it.".to_owned());
             }
-            BodyCommand::Edit => {}
+            // The caller saves the snake, because it has the library.
+            BodyCommand::Edit | BodyCommand::Save => {}
             BodyCommand::Set { block, size, value } => edited.set(*block, *size, *value),
             BodyCommand::MakeRigid { block } => {
                 let rigid = edited.with_block(*block, |segment| segment.youngs_modulus_pa = None);
@@ -230,6 +258,8 @@ impl Edited {
             past: Vec::new(),
             future: Vec::new(),
             last_set: None,
+            previewed: None,
+            saved: None,
             changed_at: None,
             evaluation: None,
             ready: None,
@@ -303,11 +333,12 @@ impl Edited {
         Ok(Champion { genome, trial, evaluation, chosen_by: None, origin })
     }
 
-    /// Returns the original and the edited snake side by side, if a preview is ready.
+    /// Returns the edited snake, which the stage then selects, beside the original, if a preview is ready.
     fn show(&mut self) -> Option<Show> {
         let champion = self.ready.take()?;
         let edited = StagedChampion::from_edited(&champion).named("Edited".to_owned());
-        Some(Show::race(vec![self.original.clone(), edited]))
+        self.previewed = Some(edited.clone());
+        Some(Show::race(vec![edited, self.original.clone()]))
     }
 
     fn tune(&mut self) -> Result<(), String> {

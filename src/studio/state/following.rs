@@ -23,6 +23,8 @@ pub(crate) struct Following {
     is_new: bool,
     /// Whether the playback is held at its start until the first generation is finished.
     pub holds: bool,
+    /// Whether nothing else is shown for now, because the user is choosing what to do with the snake on the stage.
+    pub is_held: bool,
     /// Number of the run that is followed.
     run: u32,
     /// Whether a story is repeated after its end. This does not change what the stage shows.
@@ -213,7 +215,7 @@ fn follow(
         // The user is looking at the paused stage.
         return;
     }
-    if lanes.iter().any(|lane| lane.replay.is_disturbed()) {
+    if following.is_held || lanes.iter().any(|lane| lane.replay.is_disturbed()) {
         return;
     }
     let is_over = playback.time_s() > 0.0 && playback.time_s() >= end_s(lanes);
@@ -337,6 +339,25 @@ mod tests {
         app.world_mut().resource_mut::<Following>().restore(earlier);
         app.update();
         assert_eq!(app.world().resource::<Notices>().len(), 0, "it was announced before");
+    }
+
+    #[test]
+    fn while_a_menu_is_open_the_stage_keeps_its_snakes() {
+        let mut app = App::new();
+        let mut playback = Playback::default();
+        playback.is_playing = true;
+        app.add_message::<Show>()
+            .insert_resource(explored_run())
+            .insert_resource(Following::from_start())
+            .insert_resource(playback)
+            .init_resource::<Time<Real>>()
+            .add_systems(Update, follow);
+        let mut shown = |is_held| {
+            app.world_mut().resource_mut::<Following>().is_held = is_held;
+            app.update();
+            app.world_mut().resource_mut::<Messages<Show>>().drain().count()
+        };
+        assert_eq!([shown(true), shown(true), shown(false), shown(false)], [0, 0, 1, 0]);
     }
 
     #[test]

@@ -37,6 +37,8 @@ pub(super) struct Workspace {
     pub is_presenting: bool,
     /// Whether the screen is black in the presenting mode.
     pub is_black: bool,
+    /// Whether a menu is open.
+    pub is_menu_open: bool,
     /// Label of the setting to scroll to, until the settings panel has handled it.
     pub sought: Option<&'static str>,
     modal: Option<Modal>,
@@ -84,7 +86,7 @@ impl Workspace {
             }
             WindowCommand::ToggleBlack => self.is_black = !self.is_black,
             WindowCommand::ChangeScale { larger } => return self.scale.change(*larger).err(),
-            WindowCommand::Enlarge => self.scale.enlarge(),
+            WindowCommand::ToggleLarger => return self.scale.toggle_larger().err(),
             WindowCommand::ResetScale => self.scale.chosen = 1.0,
             WindowCommand::Fold { section, is_open: true } => {
                 self.unfolded.insert((*section).to_owned());

@@ -14,6 +14,9 @@ const USUAL_WINDOW: egui::Vec2 = egui::vec2(1280.0, 720.0);
 /// Window size at which the presenting mode has the scale 1, in logical pixels.
 const PRESENTED: egui::Vec2 = egui::vec2(1000.0, 625.0);
 
+/// Reason why texts cannot be larger.
+const NO_ROOM: &str = "The window is too small for larger panels. Enlarge the window first.";
+
 /// Scale of the panels: the usual one of the window, the user's choice and the window's limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UiScale {
@@ -61,13 +64,18 @@ impl UiScale {
         ((share.x.min(share.y) * 20.0).floor() / 20.0).max(UI_SCALES[0])
     }
 
-    /// Makes the scale a quarter larger, or the usual one if the window has no room for larger texts.
-    pub fn enlarge(&mut self) {
-        let before = self.shown();
-        self.chosen = (self.chosen * 1.25).min(UI_SCALES[UI_SCALES.len() - 1]);
-        if self.shown() <= before {
-            self.chosen = 1.0;
+    /// Makes all texts a quarter larger than usual; texts that are larger already get their usual size.
+    ///
+    /// # Errors
+    /// Says that the window is too small for larger texts.
+    pub fn toggle_larger(&mut self) -> Result<(), &'static str> {
+        let before = *self;
+        self.chosen = if before.chosen > 1.0 { 1.0 } else { 1.25 };
+        if self.chosen > 1.0 && self.shown() <= before.shown() {
+            *self = before;
+            return Err(NO_ROOM);
         }
+        Ok(())
     }
 
     /// Chooses the next larger or smaller scale.
@@ -84,9 +92,7 @@ impl UiScale {
         match next {
             None if larger => Err("The panels have their largest size."),
             None => Err("The panels have their smallest size."),
-            Some(next) if *next > self.largest => {
-                Err("The window is too small for larger panels. Enlarge the window first.")
-            }
+            Some(next) if *next > self.largest => Err(NO_ROOM),
             Some(next) => {
                 let [smallest, .., largest] = UI_SCALES;
                 self.chosen = (next / self.usual).clamp(smallest, largest);
@@ -120,13 +126,16 @@ mod tests {
     }
 
     #[test]
-    fn a_projector_gets_larger_texts_in_steps_of_a_quarter_and_then_the_usual_ones() {
+    fn larger_for_a_projector_is_a_switch() {
         let mut scale = fitted(1280.0, 720.0, 1.0);
-        let mut shown = || {
-            scale.enlarge();
-            (scale.shown(), scale.chosen > 1.0)
-        };
-        assert_eq!([shown(), shown(), shown()], [(1.25, true), (1.5, true), (1.0, false)]);
+        for (shown, is_on) in [(1.25, true), (1.0, false), (1.25, true)] {
+            assert_eq!(scale.toggle_larger(), Ok(()));
+            assert_eq!((scale.shown(), scale.chosen > 1.0), (shown, is_on));
+        }
+        assert_eq!(scale.change(true), Ok(()));
+        assert_eq!((scale.toggle_larger(), scale.shown()), (Ok(()), 1.0), "from any larger size");
+        let mut small = fitted(800.0, 480.0, 1.0);
+        assert_eq!((small.toggle_larger(), small.chosen), (Err(NO_ROOM), 1.0));
     }
 
     #[test]

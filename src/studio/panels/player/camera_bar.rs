@@ -49,12 +49,11 @@ pub(crate) fn view_bar(
             _ => ("Dark", "Switch to the dark theme"),
         };
         CommandButton::new(name, hint, theme).show(ui);
-        let larger = Command::Window(WindowCommand::Enlarge);
+        let larger = Command::Window(WindowCommand::ToggleLarger);
         let is_larger = is_on(&larger).unwrap_or(false);
         if !is_narrow {
             let button = egui::Button::new("Larger").selected(is_larger);
-            let hint =
-                "All texts a quarter larger, for a projector; after the largest, the usual size";
+            let hint = "All texts a quarter larger, for a projector, or back to the usual size";
             CommandButton::of(button, hint, larger).show(ui);
         }
         let hint = "Save a picture of the stage (P) or of the whole window (Shift P)";
@@ -100,7 +99,7 @@ pub(crate) mod tests {
         for (label, command) in [
             ("Side", Command::View(ViewCommand::SetCamera(CameraMode::Side))),
             ("Dark", Command::View(ViewCommand::ToggleTheme)),
-            ("Larger", Command::Window(WindowCommand::Enlarge)),
+            ("Larger", Command::Window(WindowCommand::ToggleLarger)),
             ("Picture", Command::View(ViewCommand::TakePicture(ScreenshotArea::Stage))),
         ] {
             assert_eq!(clicked(&mut switched_off_bar(), label), [command], "{label}");

@@ -74,7 +74,7 @@ fn the_preview_shows_both_snakes_and_a_forbidden_body_gives_its_reason() {
     editor.apply(&set(0.8), None, &mut run).expect("allowed");
     let champions = preview(&mut editor, &mut run).expect("both").champions;
     let blocks = |staged: &StagedChampion| staged.body().parts[2].width_m;
-    assert_eq!(champions.iter().map(blocks).collect::<Vec<_>>(), [1.0, 0.8]);
+    assert_eq!(champions.iter().map(blocks).collect::<Vec<_>>(), [0.8, 1.0]);
     // The block has a hundredth of its neighbours' mass.
     editor.apply(&set(0.1), None, &mut run).expect("it can be set");
     let problem = editor.edited().expect("editing").problem.expect("refused");
@@ -97,7 +97,7 @@ fn a_change_just_before_a_tuning_is_shown_and_the_next_tuning_tries_other_gaits(
     assert!(undo.contains("being tuned"), "{undo}");
     editor.apply(&BodyCommand::CancelTuning, None, &mut run).expect("allowed");
     let champions = preview(&mut editor, &mut run).expect("both").champions;
-    assert_eq!(champions[1].body().parts[1].height_m, 0.9);
+    assert_eq!(champions[0].body().parts[1].height_m, 0.9);
     assert_eq!(editor.edited.as_ref().map(|edited| edited.attempts), Some(1));
 }
 
@@ -110,4 +110,23 @@ fn a_run_starts_from_the_edited_body_and_closes_the_editor() {
     assert_eq!((editor.edited().is_none(), run.status()), (true, RunStatus::Running));
     assert_eq!(run.next_founder(), Some("climber, edited"));
     assert!(run.next_settings().genome.bodies.vary);
+}
+
+#[test]
+fn a_changed_body_is_unsaved_until_it_is_saved_as_it_is_now() {
+    let (mut editor, mut run) = editing();
+    let is_unsaved = |editor: &BodyEditor| editor.edited().expect("editing").is_unsaved;
+    assert!(!is_unsaved(&editor) && editor.to_save().is_err(), "nothing was changed");
+    for value in [0.8, 0.9] {
+        let set = BodyCommand::Set { block: 1, size: BlockSize::Height, value };
+        editor.apply(&set, None, &mut run).expect("allowed");
+        assert!(is_unsaved(&editor) && editor.to_save().is_err(), "not simulated yet");
+        let shown = preview(&mut editor, &mut run).expect("both").champions;
+        editor.note_saved(&shown[1]);
+        assert!(is_unsaved(&editor), "the original was saved");
+        let edited = editor.to_save().expect("simulated");
+        assert_eq!(edited.champion().genome, shown[0].champion().genome);
+        editor.note_saved(&edited);
+        assert!(!is_unsaved(&editor));
+    }
 }
