@@ -33,6 +33,7 @@ fn evaluated(settings: &Settings, genomes: &[Genome]) -> Vec<Evaluation> {
 }
 
 /// Counts the bodies by the reasons of their disqualification, and prints the counts.
+#[expect(clippy::print_stdout, reason = "the test runner shows it with --nocapture")]
 fn counted<'r>(reasons: impl Iterator<Item = &'r str>) -> BTreeMap<&'r str, u32> {
     let mut counts = BTreeMap::new();
     reasons.for_each(|reason| *counts.entry(reason).or_default() += 1);

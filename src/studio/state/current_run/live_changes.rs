@@ -172,9 +172,12 @@ impl CurrentRun {
     }
 }
 
-/// Describes a change of a setting: "From generation 8: mutation range 50 N·m".
+/// Describes a change of a setting: "From generation 8: mutation range 50 N·m", or "The run goes on until generation 400."
 pub(crate) fn news_of(change: &SettingChange) -> String {
     let SettingChange { generation, field, value } = change;
+    if field == "evolution.generations" {
+        return format!("The run goes on until generation {value}.");
+    }
     let setting = setting_of(field);
     let name = setting.map_or_else(|| field.clone(), |setting| setting.short_name());
     let unit = setting.map(|setting| setting.shown_unit()).filter(|unit| !unit.is_empty());
@@ -211,6 +214,8 @@ mod tests {
         assert_eq!(range, "From generation 8: mutation range 50 N·m");
         let crossover = change("ga.crossover", SettingValue::Name("one_point"));
         assert_eq!(crossover, "From generation 8: crossover one point");
+        let longer = change("generations", SettingValue::Whole(400));
+        assert_eq!(longer, "The run goes on until generation 400.");
         let refusal = refusal_in_words("evolution.halving.mutation_range_nm", "the run has ended");
         assert_eq!(refusal, "Mutation range was not changed in the current run: the run has ended");
     }

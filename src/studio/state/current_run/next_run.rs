@@ -120,7 +120,12 @@ impl CurrentRun {
     }
 
     fn in_words(&self, preset: &str, settings: &Settings) -> String {
-        let is_changed = self.settings_of(preset).is_some_and(|own| own != settings);
+        let is_changed = self.settings_of(preset).is_some_and(|own| {
+            let mut own = own.clone();
+            // A longer run is no other experiment.
+            own.evolution.generations = settings.evolution.generations;
+            own != *settings
+        });
         if is_changed { format!("{preset}, changed") } else { preset.to_owned() }
     }
 
@@ -205,5 +210,7 @@ mod tests {
         assert_eq!(said(&run), words("climb, changed", "climb, changed"), "it has not started");
         run.set_preset("ice").expect("shipped");
         assert_eq!(said(&run), words("ice", "ice"));
+        run.set_field("evolution.generations", "77").expect("allowed");
+        assert_eq!(said(&run), words("ice", "ice"), "only longer");
     }
 }
