@@ -115,13 +115,10 @@ impl BodyPanel {
         let name = format!("Body of {}", edited.original.name());
         title_and(ui, &name, |ui| {
             let closes = "Show the original alone. The changes are lost";
-            let [can_undo, can_redo, can_save] =
-                [edited.steps[0], edited.steps[1], edited.is_unsaved]
-                    .map(|can| can && edited.tuning.is_none());
+            let [can_undo, can_redo] = edited.steps.map(|can| can && edited.tuning.is_none());
             // The buttons are added from right to left.
             for (label, hint, is_on, command) in [
                 ("Close", closes, true, BodyCommand::Close),
-                ("Save", "Save the changed snake in the library", can_save, BodyCommand::Save),
                 ("Redo", "Redo the latest undone change", can_redo, BodyCommand::Redo),
                 ("Undo", "Undo the latest change of the body", can_undo, BodyCommand::Undo),
             ] {
@@ -198,7 +195,7 @@ fn softness(ui: &mut egui::Ui, block: usize, segment: &Segment) {
     ui.end_row();
 }
 
-/// Draws the buttons that adapt the gait to the edited body, and that start a run from it.
+/// Draws the buttons that adapt the gait to the edited body, start a run from it, and save it.
 fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>) {
     ui.add_space(theme::GAP / 2.0);
     if let Some([done, all]) = edited.tuning {
@@ -209,16 +206,24 @@ fn end(ui: &mut egui::Ui, edited: &EditedBody<'_>) {
     }
     let is_allowed = edited.problem.is_none();
     ui.horizontal_wrapped(|ui| {
-        for (label, hint, command) in [
+        for (label, hint, is_allowed, command) in [
             (
                 "Adapt the gait",
                 "The gait fits the body with which it evolved: try 59 gaits like it, and keep the best",
+                is_allowed,
                 BodyCommand::Tune,
             ),
             (
                 "Evolve body and gait",
                 "Start a run from this snake, in which its blocks change, too. The current run stays saved",
+                is_allowed,
                 BodyCommand::Evolve,
+            ),
+            (
+                "Save",
+                "Save the changed snake in the library",
+                is_allowed && edited.is_unsaved,
+                BodyCommand::Save,
             ),
         ] {
             CommandButton::new(label, hint, Command::Body(command)).only_if(is_allowed).show(ui);

@@ -228,6 +228,7 @@ fn advance(
     if selection.as_ref().is_some_and(|of| of.held.is_some_and(|held| held.is_pulling)) {
         playback.is_playing = true;
     }
+    playback.are_several = lanes.iter().filter(|(_, lane)| !lane.is_ghost).nth(1).is_some();
     playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);
     for (entity, mut lane) in &mut lanes {
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));

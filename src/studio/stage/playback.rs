@@ -20,6 +20,8 @@ pub(crate) struct Playback {
     pub loops: bool,
     /// Real time since the clock reached the end, in seconds.
     rested_s: f32,
+    /// Whether several snakes are played side by side.
+    pub are_several: bool,
     /// Whether the time was set by a seek. The next frame then draws exactly this time.
     is_sought: bool,
     /// Time from which changes of the world were last tried, in simulated seconds; `None` if the user has since gone to
@@ -35,6 +37,8 @@ pub(crate) const SPEED_RANGE: RangeInclusive<f32> = 0.1..=16.0;
 const SPEEDS: [f32; 8] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
 /// Pause at the end before a loop restarts, in seconds.
 const REST_S: f32 = 1.5;
+/// Pause at the end of several snakes before a loop restarts, in seconds: time to read their places.
+const REST_OF_SEVERAL_S: f32 = 6.0;
 /// Maximum real time by which a single frame advances the clock, in seconds. After a longer gap (a dragged window, a
 /// sleeping laptop) playback continues where it was instead of jumping ahead.
 const MAX_CATCH_UP_S: f32 = 0.5;
@@ -47,6 +51,7 @@ impl Default for Playback {
             is_playing: true,
             loops: true,
             rested_s: 0.0,
+            are_several: false,
             is_sought: false,
             tried_from_s: None,
             commands: 0,
@@ -181,7 +186,8 @@ impl Playback {
         }
         self.time_s = end_s;
         self.rested_s += elapsed_s;
-        if self.rested_s > REST_S && self.loops {
+        let rest_s = if self.are_several { REST_OF_SEVERAL_S } else { REST_S };
+        if self.rested_s > rest_s && self.loops {
             return self.restart();
         }
         self.is_playing = self.loops;
@@ -193,6 +199,18 @@ mod tests {
     use super::*;
 
     const STEP_S: f64 = 1.0 / 60.0;
+
+    #[test]
+    fn after_several_snakes_there_is_time_to_read_their_places_before_the_loop() {
+        let restarts_after = |are_several| {
+            let mut playback = Playback { are_several, time_s: 15.0, ..Playback::default() };
+            (1..100).find(|_| {
+                playback.pass(0.5, 1.0, 15.0);
+                playback.time_s == 0.0
+            })
+        };
+        assert_eq!([false, true].map(restarts_after), [Some(4), Some(13)]);
+    }
 
     #[test]
     fn step_moves_by_exactly_one_physics_step() {

@@ -3,6 +3,7 @@
 use bevy_egui::egui;
 
 use crate::studio::state::body_editor::EditedBody;
+use crate::studio::ui::text_rows::explain;
 use crate::studio::ui::theme;
 use snakes_core::genome::{BodySpace, MOST_SEGMENTS};
 
@@ -40,17 +41,27 @@ pub(super) fn budgets(ui: &mut egui::Ui, edited: &EditedBody<'_>) {
         ("Blocks", [body.limbs() as f64, MOST_SEGMENTS.into()], ("", 0), "From 2 to 12"),
     ];
     let palette = theme::of(ui);
+    let is_beyond = |[used, all]: [f64; 2]| used > all * (1.0 + TOLERANCE);
+    let exceeds = list.iter().any(|(_, amounts, ..)| is_beyond(*amounts));
     egui::Grid::new("budgets").num_columns(2).show(ui, |ui| {
         for (name, [used, all], (unit, digits), hint) in list {
             ui.label(name).on_hover_text(hint);
-            let is_beyond = used > all * (1.0 + TOLERANCE);
-            let fill = if is_beyond { palette.problem } else { palette.accent_soft };
+            let (fill, color) = match is_beyond([used, all]) {
+                true => (palette.problem, palette.panel),
+                false => (palette.accent_soft, palette.text),
+            };
             let words = format!("{used:.digits$} of {all:.digits$} {unit}");
             let bar = egui::ProgressBar::new((used / all.max(1.0e-9)) as f32).fill(fill);
-            ui.add(bar.text(words.trim_end())).on_hover_text(hint);
+            let words = egui::RichText::new(words.trim_end()).color(color);
+            ui.add(bar.text(words)).on_hover_text(hint);
             ui.end_row();
         }
     });
+    if exceeds {
+        let text = "Red: more than the snakes of a run may have, so the comparison with the original is not fair. \
+                    This snake can be watched and saved all the same.";
+        explain(ui, text);
+    }
     ui.label(format!(
         "Mass {:.1} kg; the original has {:.1} kg",
         body.mass_kg(),

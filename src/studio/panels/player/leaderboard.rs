@@ -53,6 +53,10 @@ fn split_times(ui: &mut egui::Ui, lane: &Lane, time_s: f64) {
     });
 }
 
+/// Explanation of the leaderboard's numbers.
+const MIDDLE: &str =
+    "Place of the middle block now, towards the stairs. The fitness may count something else";
+
 /// Draws the leaderboard, and sends the user's commands. `focus` is the lane whose numbers are shown. On a narrow
 /// stage (`is_narrow`) the texts are shorter. `can_leave` tells whether an earlier scene can come back.
 pub(crate) fn leaderboard(
@@ -76,6 +80,14 @@ pub(crate) fn leaderboard(
         .min_col_width(0.0)
         .spacing([theme::GAP, theme::GAP / 4.0])
         .show(ui, |ui| {
+            ui.label("");
+            ui.label("");
+            ui.label("");
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let head = egui::RichText::new("middle block at").small();
+                ui.label(head.color(palette.text_weak)).on_hover_text(MIDDLE);
+            });
+            ui.end_row();
             // A row that changed places with its rank could not be followed, and would slip away from under the pointer.
             for lane in lanes {
                 let of_lane = |ranked: &RankedLane| ranked.lane == lane.number;
