@@ -49,13 +49,13 @@ pub(super) fn apply(
 ) {
     waiting.extend(commands.read().cloned());
     while let Some(command) = &waiting.pop_front() {
-        let before = studio.run.next_plan().clone();
+        let before = studio.run.plan_next.clone();
         let left = studio.stage.scene(&studio.view.rig);
         let frames = studio.frames();
         let done = studio.execute(command);
         let frames = (frames, studio.frames());
         let is_other = studio.stage.finish(command, left, frames, &mut studio.view.rig);
-        studio.history.note(command, before, studio.run.next_plan());
+        studio.history.note(command, before, &studio.run.plan_next);
         studio.notices.refusal(done.err());
         if is_other {
             break;

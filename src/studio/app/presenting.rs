@@ -75,7 +75,7 @@ fn sway(
     if playback.is_playing && rig.camera_mode == CameraMode::Follow {
         let from_s = *swayed_s;
         *swayed_s = (from_s + time.delta_secs()) % SWAY_S;
-        rig.turn_by(sway_rad(*swayed_s) - sway_rad(from_s));
+        rig.view.yaw_rad += sway_rad(*swayed_s) - sway_rad(from_s);
     }
 }
 

@@ -241,4 +241,4 @@ impl ChampionRow<'_> {
 }
 
 #[cfg(test)]
-pub(super) mod tests;
+mod tests;

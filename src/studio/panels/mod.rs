@@ -14,7 +14,6 @@ mod library;
 mod machines;
 mod on_stage;
 mod own_files;
-mod own_stairs_button;
 mod player;
 pub mod quit_question;
 mod run;
@@ -352,7 +351,7 @@ impl Viewer<'_, '_, '_> {
             PanelKind::Champions => {
                 let view = ChampionsView {
                     opening: &opening.0,
-                    reports: run.reports(),
+                    reports: &run.reports,
                     shown: &shown,
                     leaders: &|generation| run.leaders(generation).len(),
                     follows: on_stage.following.offered(run),

@@ -1,9 +1,12 @@
-//! Helper functions for tests of panels: panels without a window, champions, reports.
+//! Helper functions for tests of panels: panels without a window, clicks, assertions, champions, reports.
+
+use std::collections::BTreeSet;
 
 use bevy_egui::egui;
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, HarnessBuilder};
 
+use super::settings::every_setting;
 use crate::studio::commands::{Command, PlanCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
@@ -73,6 +76,67 @@ pub(super) fn type_into<S>(panel: &mut Harness<'_, S>, label: &str, text: &str) 
 pub(super) fn press<S>(panel: &mut Harness<'_, S>, key: egui::Key) {
     panel.key_press(key);
     panel.run();
+}
+
+/// Asserts that labels and controls fit into a panel of this width, in points.
+pub(super) fn assert_fits<S>(harness: &Harness<'_, S>, width: f32) {
+    use egui::accesskit::Role;
+    let roles =
+        [Role::Label, Role::Slider, Role::TextInput, Role::Button, Role::CheckBox, Role::ComboBox];
+    for node in roles.into_iter().flat_map(|role| harness.query_all_by_role(role)) {
+        let rect = node.rect();
+        let is_inside = rect.left() >= 0.0 && rect.right() <= width;
+        assert!(is_inside, "{rect:?} of {width} points: {node:?}");
+    }
+}
+
+/// Asserts that a panel has labels that contain these texts.
+pub(super) fn assert_shows<S>(panel: &Harness<'_, S>, texts: &[&str]) {
+    for text in texts {
+        assert!(shows(panel, text), "{text}");
+    }
+}
+
+/// Clicks on the element with this label.
+pub(super) fn click<S>(panel: &mut Harness<'_, S>, label: &str) {
+    panel.get_by_label(label).click();
+    panel.run();
+}
+
+/// Clicks at a position, in points.
+pub(super) fn click_at<S>(panel: &mut Harness<'_, S>, at: egui::Pos2) {
+    panel.drag_at(at);
+    panel.run();
+    panel.drop_at(at);
+    panel.run();
+}
+
+/// Returns the titles of all sections.
+pub(super) fn every_section() -> BTreeSet<String> {
+    every_setting().into_iter().map(|listed| listed.section.title.to_owned()).collect()
+}
+
+/// Asserts that a part of a panel has at least `least` texts, and that no two of them overlap by more than `touch` points.
+pub(super) fn assert_no_overlap<S>(
+    panel: &Harness<'_, S>,
+    part: egui::Rect,
+    least: usize,
+    touch: f32,
+) {
+    let texts = panel.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+        egui::Shape::Text(text) if part.contains(text.pos) => {
+            let rect = clipped.shape.visual_bounding_rect().shrink(touch);
+            Some((text.galley.text().to_owned(), rect))
+        }
+        _ => None,
+    });
+    let texts: Vec<_> = texts.collect();
+    assert!(texts.len() >= least, "{texts:?}");
+    for (index, (text, rect)) in texts.iter().enumerate() {
+        for (other, beside) in &texts[index + 1..] {
+            assert!(!rect.intersects(*beside), "{text} {rect} and {other} {beside}");
+        }
+    }
 }
 
 /// Returns the command that sets a field of the next run.

@@ -1,10 +1,8 @@
 //! Thumbnail of a champion: stairs, path of the middle limb and final pose, drawn from shapes without textures.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Pos2, Rect, Shape, Stroke};
+use bevy_egui::egui::{self, Pos2, Rect, Shape, Stroke};
 
-use crate::studio::ui::theme;
-use crate::studio::ui::theme::Palette;
+use crate::studio::ui::theme::{self, Palette};
 use snakes_core::save::library::Thumbnail;
 
 /// Maximum vertical stretch of the drawing, because stairs are long and low.
@@ -99,12 +97,8 @@ mod tests {
         };
         let rect = Rect::from_min_size(egui::pos2(10.0, 20.0), theme::THUMBNAIL_SIZE);
         let view = ThumbnailView::new(rect, &of.thumbnail);
-        for at in of
-            .thumbnail
-            .way_m
-            .iter()
-            .chain(of.thumbnail.parts_m.iter().flat_map(|(_, corners)| corners))
-        {
+        let corners = of.thumbnail.parts_m.iter().flat_map(|(_, corners)| corners);
+        for at in of.thumbnail.way_m.iter().chain(corners) {
             assert!(rect.contains(view.at(*at)), "{at:?}");
         }
         // An empty thumbnail causes no error.

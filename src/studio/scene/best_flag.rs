@@ -42,7 +42,7 @@ pub(super) fn plant(
     mut commands: Commands,
 ) {
     let Some(run) = run else { return };
-    let champions = run.reports().iter().filter_map(|report| report.champion.as_ref());
+    let champions = run.reports.iter().filter_map(|report| report.champion.as_ref());
     let reached_m = |champion: &&Champion| champion.evaluation.centre_y_m;
     let best = champions.max_by(|a, b| reached_m(a).total_cmp(&reached_m(b)));
     let place = best.as_ref().map(|champion| (reached_m(champion), run.number));

@@ -59,7 +59,8 @@ pub(crate) struct CurrentRun {
     pub(super) source: RunSource,
     /// Plan of the current run after all its changes.
     pub plan_now: RunPlan,
-    plan_next: RunPlan,
+    /// Plan of the next run.
+    pub plan_next: RunPlan,
     /// Requested changes of the current run that take effect with its next generation: full dotted names and values.
     pending: Vec<(String, SettingValue)>,
     background: Option<BackgroundRun>,
@@ -69,7 +70,8 @@ pub(crate) struct CurrentRun {
     pub fault: Option<String>,
     /// The previous run, which may still be stopping.
     before: Option<BackgroundRun>,
-    reports: Vec<GenerationReport>,
+    /// Reports of the finished generations, the first generation first.
+    pub reports: Vec<GenerationReport>,
     /// Generations that were better than all earlier ones, the earliest first.
     pub milestones: Vec<Milestone>,
     /// Results besides champions; `None` until the first generation is finished.
@@ -150,11 +152,6 @@ impl CurrentRun {
     /// Returns the other runs of the saves folder, each with its readable name; `None` until the runs are listed.
     pub fn listed(&self) -> Option<impl Iterator<Item = &ListedRun>> {
         Some(self.others.runs.as_ref()?.iter().filter(|of| of.run.folder != self.source.folder))
-    }
-
-    /// Returns the reports of the finished generations, the first generation first.
-    pub fn reports(&self) -> &[GenerationReport] {
-        &self.reports
     }
 
     /// Returns the results besides champions; `None` until the first generation is finished.

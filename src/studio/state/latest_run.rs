@@ -41,7 +41,7 @@ fn open(
     if run.status() != RunStatus::Ready {
         return;
     }
-    let own = run.next_plan();
+    let own = &run.plan_next;
     let is_plain = run.context.presets.settings_of(&own.preset) == Some(&own.settings);
     // Without flags for settings, the user wants none in particular.
     let is_any_wanted = is_plain && own.preset == DEFAULT_PRESET && !options.names_preset;
@@ -159,7 +159,7 @@ mod tests {
         ] {
             let is_open = |world: &World| {
                 let run = world.resource::<CurrentRun>();
-                (run.reports().len(), run.status()) == (1, status)
+                (run.reports.len(), run.status()) == (1, status)
             };
             for (own, command, seed) in [(Some(generations), go_on, 1), (None, RunCommand::New, 2)]
             {
@@ -168,7 +168,7 @@ mod tests {
                 let is_told = said.starts_with("test 1, ") && said.contains(" is finished: ");
                 assert_eq!(is_told, status == RunStatus::Finished, "{said}");
                 let mut run = app.world_mut().resource_mut::<CurrentRun>();
-                let now = (run.plan_now.seed, run.number, run.reports().len());
+                let now = (run.plan_now.seed, run.number, run.reports.len());
                 assert_eq!((now, run.status()), ((1, 0, 1), status));
                 assert!(!run.milestones.is_empty(), "its best snake can be shown");
                 run.apply(&command, &mut Notices::default()).expect("allowed");

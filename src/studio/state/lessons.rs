@@ -164,7 +164,7 @@ impl Lessons {
                 let go_on = (run.status() == RunStatus::Running).then_some(go_on);
                 run.pause()?;
                 run.is_lent = true;
-                let (next, history) = (run.next_plan().clone(), std::mem::take(history));
+                let (next, history) = (run.plan_next.clone(), std::mem::take(history));
                 Own { next, history, go_on }
             }
         };

@@ -94,7 +94,7 @@ pub(crate) fn learning(fitness: &[f32]) -> Vec<usize> {
 /// Returns the champions of the current run's generations; of many, those that show how the run learned.
 pub(crate) fn all_generations(run: &CurrentRun) -> Result<Vec<StagedChampion>, String> {
     let champions: Vec<&Champion> =
-        run.reports().iter().filter_map(|report| report.champion.as_ref()).collect();
+        run.reports.iter().filter_map(|report| report.champion.as_ref()).collect();
     if champions.len() < 2 {
         return Err("Nothing to race yet: finish two generations first.".to_owned());
     }

@@ -122,7 +122,7 @@ mod tests {
             let places = (&library, &opening);
             let shown = apply_to_plan(&command, &mut run, places, stage(&show), &mut notices);
             assert_eq!(shown.expect("shipped").is_some(), is_tried, "{name}");
-            assert_eq!(run.next_plan().preset, name);
+            assert_eq!(run.plan_next.preset, name);
             let begin = [RunCommand::Reset, RunCommand::Start].map(Command::Run);
             let begin = begin.map(|command| ("Begin a new run".to_owned(), command));
             assert_eq!(notices.last_offers(), if is_tried { vec![] } else { begin.to_vec() });

@@ -65,7 +65,7 @@ impl Turns {
         on_stage: Option<&StagedChampion>,
     ) -> Option<StagedChampion> {
         let number = run.number;
-        let found = run.reports().iter().filter_map(|report| report.champion.as_ref());
+        let found = run.reports.iter().filter_map(|report| report.champion.as_ref());
         let of_run: Vec<_> =
             found.map(|champion| StagedChampion::from_run(champion, number)).collect();
         if of_run.is_empty() && self.shipped.is_empty() {

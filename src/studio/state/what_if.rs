@@ -100,7 +100,7 @@ pub(crate) fn what_if(
     stage: ChangedStage,
     change: &WorldChange,
 ) -> Result<Option<Show>, String> {
-    let before = run.next_plan().clone();
+    let before = run.plan_next.clone();
     match change {
         WorldChange::Fields(changes) => run.set_fields(changes)?,
         WorldChange::Preset(name) => run.set_preset(name)?,
@@ -146,7 +146,7 @@ pub(crate) fn another_beside(run: &CurrentRun, show: Show) -> Result<Show, Strin
     let can_try_another = show.mode.can_try_another();
     match show.mode {
         StageMode::WhatIf { before, mut beside, current } if can_try_another => {
-            beside.push(run.next_plan().clone());
+            beside.push(run.plan_next.clone());
             Ok(what_if_of(show.champions, before, beside, current))
         }
         StageMode::WhatIf { beside, current, .. } if current > beside.len() => {

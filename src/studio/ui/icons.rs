@@ -1,7 +1,6 @@
 //! Icon buttons. The icons are drawn, because no font has all of them in one style.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Color32, Pos2, Rect, Shape, Stroke, WidgetType};
+use bevy_egui::egui::{self, Color32, Pos2, Rect, Shape, Stroke, WidgetType};
 
 use super::accessible::{named, named_selected};
 use super::theme;

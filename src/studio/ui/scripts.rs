@@ -8,10 +8,9 @@ use std::collections::BTreeSet;
 use ab_glyph::{Font, FontRef};
 use bevy::prelude::*;
 use bevy::tasks::{IoTaskPool, Task, block_on};
-use bevy_egui::egui;
 use bevy_egui::egui::epaint::text::{FontInsert, FontPriority, InsertFontFamily, LayoutJob};
 use bevy_egui::egui::epaint::{ClippedShape, TextShape};
-use bevy_egui::{EguiContext, EguiFullOutput, EguiPostUpdateSet};
+use bevy_egui::{EguiContext, EguiFullOutput, EguiPostUpdateSet, egui};
 
 use snakes_lab::plot::{SystemFont, in_visual_order, system_font};
 

@@ -7,8 +7,7 @@ use std::str::FromStr;
 
 use bevy::color::ColorToPacked;
 use bevy::prelude::{Color, Resource};
-use bevy_egui::egui;
-use bevy_egui::egui::Color32;
+use bevy_egui::egui::{self, Color32};
 
 use snakes_core::check::Invalid;
 use snakes_core::schema::named_values;

@@ -222,7 +222,7 @@ impl StageParams<'_, '_> {
                 staged.map(|staged| with_one_more(on_show, staged)).transpose()?.flatten()
             }
             StageCommand::ShowGeneration(generation) => {
-                let latest = run.reports().last().map(|report| report.generation);
+                let latest = run.reports.last().map(|report| report.generation);
                 let number = generation.or(latest).ok_or("No generation is finished yet.")?;
                 let kept = run.whole_generation(number);
                 Some(kept.ok_or_else(|| {

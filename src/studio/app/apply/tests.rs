@@ -61,7 +61,7 @@ fn set(friction: &str) -> Command {
 }
 
 fn plan(app: &App) -> RunPlan {
-    app.world().resource::<CurrentRun>().next_plan().clone()
+    app.world().resource::<CurrentRun>().plan_next.clone()
 }
 
 /// Sends one command per frame and returns the friction of the next run.
@@ -215,8 +215,7 @@ fn a_new_run_names_the_change_that_was_tried_and_takes_it() {
     show_after(&mut app, what_if, Command::Run(RunCommand::Reset)).expect("the kept change");
     let said = app.world().resource::<Notices>().last();
     assert_eq!(said, Some("The new run has the change that was tried: friction 0.25."));
-    let run = app.world().resource::<CurrentRun>();
-    assert_eq!(run.next_settings().trial.surface.friction, 0.25);
+    assert_eq!(friction_after(&mut app, &[]), 0.25);
 }
 
 #[test]
@@ -272,6 +271,5 @@ fn a_lane_that_stays_after_a_race_offers_its_world() {
     let offers = app.world().resource::<Notices>().last_offers().to_vec();
     assert_eq!(offers, [("Use this world".to_owned(), take.clone())]);
     show_after(&mut app, alone, take);
-    let run = app.world().resource::<CurrentRun>();
-    assert_eq!(run.next_settings().trial.surface.friction, 0.2);
+    assert_eq!(friction_after(&mut app, &[]), 0.2);
 }

@@ -1,8 +1,9 @@
 //! Tests of the body panel.
 
 use super::*;
-use crate::studio::panels::settings::tests::{assert_shows, click, click_at};
-use crate::studio::panels::testing::{climber, panel, random_snake, shows};
+use crate::studio::panels::testing::{
+    assert_shows, click, click_at, climber, panel, random_snake, shows,
+};
 use crate::studio::state::body_editor::BodyEditor;
 use crate::studio::state::current_run::prepared_run;
 use egui_kittest::Harness;

@@ -1,36 +1,12 @@
 //! Tests of the champions list and its buttons.
 
 use super::*;
-use crate::studio::panels::testing::{self, Sent, clicked, report_of, shows};
-use egui_kittest::Harness;
+use crate::studio::panels::testing::{self, Sent, assert_no_overlap, clicked, report_of, shows};
 use egui_kittest::kittest::Queryable;
 use snakes_core::evolve::StairsCount;
 use snakes_core::save::shipped_champion;
 use snakes_core::schema::PerPart;
 use snakes_core::score::Fitness;
-
-/// Asserts that a part of a panel has at least `least` texts, and that no two of them overlap by more than `touch` points.
-pub(in crate::studio::panels) fn assert_no_texts_overlap<S>(
-    panel: &Harness<'_, S>,
-    part: egui::Rect,
-    least: usize,
-    touch: f32,
-) {
-    let texts = panel.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
-        egui::Shape::Text(text) if part.contains(text.pos) => {
-            let rect = clipped.shape.visual_bounding_rect().shrink(touch);
-            Some((text.galley.text().to_owned(), rect))
-        }
-        _ => None,
-    });
-    let texts: Vec<_> = texts.collect();
-    assert!(texts.len() >= least, "{texts:?}");
-    for (index, (text, rect)) in texts.iter().enumerate() {
-        for (other, beside) in &texts[index + 1..] {
-            assert!(!rect.intersects(*beside), "{text} {rect} and {other} {beside}");
-        }
-    }
-}
 
 /// Creates the panel with these champions. Two snakes can race in each generation.
 fn panel<'a>(opening: &'a [(String, LoadedChampion)], reports: &'a [GenerationReport]) -> Sent<'a> {
@@ -127,5 +103,5 @@ fn a19_texts_of_a_row_do_not_overlap_and_the_highest_stairs_are_not_called_the_b
     let panel = panel(&[], &reports);
     assert!(shows(&panel, "Generation 149, highest, 89.2 %, "));
     let row = panel.get_by_label_contains("Generation 149").rect();
-    assert_no_texts_overlap(&panel, row, 2, 0.0);
+    assert_no_overlap(&panel, row, 2, 0.0);
 }

@@ -111,7 +111,7 @@ mod tests {
     fn every_snake_is_in_the_band_of_its_number_of_blocks() {
         let run = bodies_run();
         let generation = run.exploration().expect("explored").generation.as_ref().expect("two");
-        let report = run.reports().last().expect("two generations");
+        let report = run.reports.last().expect("two generations");
         for band in &report.species {
             let blocks = generation.genomes.iter().map(|genome| genome.body.segments.len());
             let count = blocks.filter(|blocks| *blocks == band.id as usize).count();
@@ -119,23 +119,20 @@ mod tests {
         }
         let all: u32 = report.species.iter().map(|band| band.size).sum();
         assert_eq!(all, report.evaluations);
-        let view = view(BLOCKS, run.settings(), run.reports());
+        let view = view(BLOCKS, run.settings(), &run.reports);
         let words = view.hits[0][0].words();
         assert!(words.starts_with("Bodies of 2 blocks in generation 1\n"), "{words}");
         let best = view.hits[1][0].words();
-        let blocks =
-            run.reports()[0].champion.as_ref().expect("healthy").genome.body.segments.len();
-        assert!(
-            best.starts_with(&format!("Best body of generation 1\n{blocks} blocks\n")),
-            "{best}"
-        );
+        let blocks = run.reports[0].champion.as_ref().expect("healthy").genome.body.segments.len();
+        let expected = format!("Best body of generation 1\n{blocks} blocks\n");
+        assert!(best.starts_with(&expected), "{best}");
     }
 
     #[test]
     fn every_snake_of_a_generation_is_in_the_band_of_its_ending() {
         let run = bodies_run();
-        let view = view(ENDINGS, run.settings(), run.reports());
-        for report in run.reports() {
+        let view = view(ENDINGS, run.settings(), &run.reports);
+        for report in &run.reports {
             let all: u32 = (ENDINGS.counts)(report).iter().map(|band| band.size).sum();
             assert_eq!(all, report.evaluations, "{:?}", report.endings);
         }
@@ -145,8 +142,7 @@ mod tests {
         assert!(bands.clone().all(|band| listed.iter().any(|series| series.name == band.name)));
         assert_eq!(view.figure.charts.len(), 1);
         assert_eq!(view.figure.table()[0][..3], ["generation", "ending", "snakes"]);
-        assert!(
-            EndingKind::OPTIONS.iter().all(|kind| ENDINGS_DRAWN.iter().any(|(of, _)| of == kind))
-        );
+        let is_drawn = |kind: &EndingKind| ENDINGS_DRAWN.iter().any(|(of, _)| of == kind);
+        assert!(EndingKind::OPTIONS.iter().all(is_drawn));
     }
 }

@@ -274,7 +274,7 @@ mod tests {
     fn view_of(first: u32, generations: &[&[SpeciesCount]]) -> ChartView {
         let run = species_run();
         let of = |(generation, species): (u32, &&[SpeciesCount])| {
-            let mut report = run.reports()[0].clone();
+            let mut report = run.reports[0].clone();
             (report.record.generation, report.record.evaluations) = (generation, 6);
             report.record.species = species.to_vec();
             report
@@ -315,16 +315,15 @@ mod tests {
         assert_eq!(layer(&view, 2), expected);
         assert_eq!(layer(&view, 1).last(), Some(&[3.25, 0.0, 0.0]));
         assert_eq!(layer(&view, 3)[0], [1.75, 6.0, 6.0], "it is born in generation 3");
-        assert!(
-            view.figure.note.ends_with("Generation 5: 1 species. Recorded since the start: 3.")
-        );
+        let note = "Generation 5: 1 species. Recorded since the start: 3.";
+        assert!(view.figure.note.ends_with(note));
     }
 
     #[test]
     fn a_generation_of_neat_is_stacked_without_gaps() {
         let run = species_run();
-        let view = view(SPECIES, run.settings(), run.reports());
-        for report in run.reports() {
+        let view = view(SPECIES, run.settings(), &run.reports);
+        for report in &run.reports {
             assert!(report.species.len() > 1, "{:?}", report.species);
             let at = f64::from(report.generation) + LEVEL;
             let mut top = 0.0;

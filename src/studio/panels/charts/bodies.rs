@@ -224,6 +224,12 @@ mod tests {
         settings
     }
 
+    fn ancestor(generation: u32, fitness: Option<f32>, genome: Genome) -> Arc<Ancestor> {
+        let place = IndividualId { generation, individual: 3 };
+        let (genome, parents) = (Some(Arc::new(genome)), Parents::Unknown);
+        Arc::new(Ancestor { place, fitness, genome, parents })
+    }
+
     /// Creates a line of descent. Each child changes its parent's body as the list says; for `None`, it changes a gene.
     fn line(changes: &[Option<BodyChange>]) -> Ancestry {
         let plan = RunPlan::new("test", 1, settings());
@@ -235,23 +241,12 @@ mod tests {
         for (generation, change) in (1..).zip([None].iter().chain(changes)) {
             if let Some(change) = change {
                 let child = |individual| {
-                    space.with_body_change(
-                        &genome,
-                        *change,
-                        &mut rng(generation * 100 + individual),
-                    )
+                    let mut rng = rng(generation * 100 + individual);
+                    space.with_body_change(&genome, *change, &mut rng)
                 };
                 genome = (0..50).find_map(child).expect("allowed");
             }
-            line.insert(
-                0,
-                Arc::new(Ancestor {
-                    place: IndividualId { generation, individual: 3 },
-                    fitness: Some(generation as f32 / 10.0),
-                    genome: Some(Arc::new(genome.clone())),
-                    parents: Parents::Unknown,
-                }),
-            );
+            line.insert(0, ancestor(generation, Some(generation as f32 / 10.0), genome.clone()));
         }
         Ancestry { line, ..Ancestry::default() }
     }
@@ -281,20 +276,14 @@ mod tests {
 
     #[test]
     fn creatures_do_not_reach_into_the_next_column() {
-        let mut settings = Settings::default();
+        let mut settings = settings();
         settings.genome.controller = ControllerKind::PartNeurons;
-        settings.genome.bodies.vary = true;
         let shape = settings.trial.genome_shape();
-        let genome = |generation: u32| {
+        let creature = |generation: u32| {
             let mut rng = stream(generation.into(), 1, 0, Purpose::Birth);
-            Some(Arc::new(settings.genome.random_genome(shape, &mut rng)))
+            ancestor(generation, None, settings.genome.random_genome(shape, &mut rng))
         };
-        let ancestor = |generation| {
-            let place = IndividualId { generation, individual: 0 };
-            let parents = Parents::Unknown;
-            Arc::new(Ancestor { place, fitness: None, genome: genome(generation), parents })
-        };
-        let line = (1..=8).rev().map(ancestor).collect();
+        let line = (1..=8).rev().map(creature).collect();
         let view = view(&settings, &[], Some(&Ancestry { line, ..Ancestry::default() }));
         let boxes = view.figure.charts[0].series.iter().flat_map(|series| match &series.shape {
             Shape::Boxes(boxes) => boxes.clone(),
@@ -313,7 +302,7 @@ mod tests {
     #[test]
     fn without_parents_the_records_of_the_run_are_shown() {
         let run = crate::studio::state::current_run::bodies_run();
-        let view = view(run.settings(), run.reports(), None);
+        let view = view(run.settings(), &run.reports, None);
         let words = view.hits[0][0].words();
         assert!(words.contains("best so far"), "{words}");
         assert!(view.figure.note.contains("best snake so far"), "{}", view.figure.note);

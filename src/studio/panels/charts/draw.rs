@@ -1,7 +1,6 @@
 //! Draws charts: series, legend, hover texts and clicks.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Color32, Pos2, Stroke};
+use bevy_egui::egui::{self, Color32, Pos2, Stroke};
 use egui_plot::{
     Arrows, Bar, BarChart, FilledArea, HLine, Line, LineStyle, PlotPoint, PlotPoints,
     PlotTransform, PlotUi, Points, VLine,
@@ -15,8 +14,7 @@ use crate::studio::panels::shown::ShownLane;
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::buttons::show_or_join;
 use crate::studio::ui::plot_axes::{bounds, fixed_plot, x_title, y_title};
-use crate::studio::ui::theme;
-use crate::studio::ui::theme::Palette;
+use crate::studio::ui::theme::{self, Palette};
 use snakes_lab::plot::{Chart, Role, Series, Shape, beside_line};
 
 /// Maximum distance between a click and a point of the chart, in egui points.

@@ -1,7 +1,6 @@
 //! Legend of a chart: a sample and a name for each series, and a hint on what a click does.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Sense, Stroke};
+use bevy_egui::egui::{self, Sense, Stroke};
 
 use super::view::ChartView;
 use crate::studio::ui::theme;

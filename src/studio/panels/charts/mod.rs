@@ -150,7 +150,7 @@ impl FitnessChart {
     pub fn ui(&mut self, ui: &mut egui::Ui, run: &CurrentRun, height: f32, shown: &[ShownLane]) {
         let version = run.version();
         if !matches!(&self.known, Some((at, _)) if *at == version) {
-            self.known = Some((version, fitness::view(run.settings(), run.reports())));
+            self.known = Some((version, fitness::view(run.settings(), &run.reports)));
         }
         let Some((_, view)) = &self.known else { return };
         draw::draw(ui, "fitness alone", view, height, shown);
@@ -162,17 +162,17 @@ fn view_of(kind: ChartKind, run: &CurrentRun) -> Option<ChartView> {
     let settings = run.settings();
     let exploration = run.exploration();
     match kind {
-        ChartKind::Fitness => Some(fitness::view(settings, run.reports())),
+        ChartKind::Fitness => Some(fitness::view(settings, &run.reports)),
         ChartKind::Spread => Some(spread::view(settings, exploration?.generation.as_ref()?)),
-        ChartKind::Endings => Some(bands::view(ENDINGS, settings, run.reports())),
-        ChartKind::Species => Some(bands::view(SPECIES, settings, run.reports())),
-        ChartKind::Blocks => Some(bands::view(BLOCKS, settings, run.reports())),
+        ChartKind::Endings => Some(bands::view(ENDINGS, settings, &run.reports)),
+        ChartKind::Species => Some(bands::view(SPECIES, settings, &run.reports)),
+        ChartKind::Blocks => Some(bands::view(BLOCKS, settings, &run.reports)),
         ChartKind::Bodies => {
-            Some(bodies::view(settings, run.reports(), exploration.map(|of| &of.ancestry)))
+            Some(bodies::view(settings, &run.reports, exploration.map(|of| &of.ancestry)))
         }
         ChartKind::Stairs => Some(stairs::view(
             settings.evolution.strategy,
-            run.reports(),
+            &run.reports,
             exploration?.stairs.as_ref()?,
         )),
         ChartKind::Front => Some(pareto_front::view(settings, &exploration?.front)),

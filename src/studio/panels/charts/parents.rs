@@ -135,11 +135,8 @@ mod tests {
             fitness(a).total_cmp(&fitness(b))
         });
         let genome = best.expect("a parent").0.genome.as_ref().expect("known");
-        assert_eq!(
-            table[3].last(),
-            Some(&genome.body.density_kg_m3.to_string()),
-            "the value itself"
-        );
+        let density = genome.body.density_kg_m3.to_string();
+        assert_eq!(table[3].last(), Some(&density), "the value itself");
         let without_genomes: Vec<_> = parents
             .iter()
             .map(|(parent, children)| {

@@ -34,7 +34,7 @@ pub(super) fn view(run: &CurrentRun) -> ChartView {
         let Statistics { best, median, .. } = record.statistics?;
         Some([f64::from(record.generation), best, median])
     };
-    let own = run.reports().iter().filter_map(|report| point(&report.record));
+    let own = run.reports.iter().filter_map(|report| point(&report.record));
     let name =
         format!("this run ({}, seed {})", settings_in_words(&run.plan_now), run.plan_now.seed);
     let mut curves = vec![Curves { name: name.into(), role: Role::First, points: own.collect() }];

@@ -5,8 +5,7 @@ use egui_kittest::kittest::Queryable;
 use super::*;
 use crate::studio::commands::pick::Pick;
 use crate::studio::commands::{RunCommand, StageCommand};
-use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, click_at};
-use crate::studio::panels::testing::{self, Sent, shows};
+use crate::studio::panels::testing::{self, Sent, assert_fits, click, click_at, shows};
 use crate::studio::state::current_run::{
     bodies_run, compared_run, explored_run, next_generation, prepared_run, species_run,
 };
@@ -50,7 +49,7 @@ fn with(
     act: impl FnOnce(&mut Sent<'_>),
 ) -> Vec<Command> {
     let mut panel = ChartsPanel { kind, ..ChartsPanel::new(None) };
-    let best = run.reports().last().and_then(|report| report.champion.as_ref());
+    let best = run.reports.last().and_then(|report| report.champion.as_ref());
     let selected = best.map(|best| StagedChampion::from_run(best, run.number));
     let mut harness = testing::panel([width, 700.0], |ui| {
         panel.ui(ui, run, &[], selected.as_ref());
@@ -116,8 +115,7 @@ fn before_the_first_generation_every_chart_explains_its_content() {
     let run = prepared_run();
     for kind in offered(&run) {
         let sent = with(&run, kind, theme::PANEL_WIDTH, |harness| {
-            let mut says = harness.query_all_by_label_contains("will appear here");
-            assert!(says.next().is_some(), "{kind:?}");
+            assert!(shows(harness, "will appear here"), "{kind:?}");
             assert!(harness.query_by_label("PNG").is_none(), "{kind:?}: nothing to write");
         });
         assert_eq!(sent, [], "{kind:?}");
@@ -214,7 +212,7 @@ fn a_clicked_snake_is_found_with_the_fitness_of_its_hover_text() {
 /// Creates the reports of a long run, copied from the last report of a short one.
 fn long_reports(generations: u32) -> Vec<snakes_lab::run::GenerationReport> {
     let run = explored_run();
-    let last = run.reports().last().expect("explored");
+    let last = run.reports.last().expect("explored");
     let of = |generation| {
         let mut report = last.clone();
         report.record.generation = generation;
@@ -241,7 +239,7 @@ fn a_long_name_in_a_legend_wraps() {
     let figure = Arc::make_mut(&mut view.figure);
     figure.charts[0].series[0].name = "a run of a preset with quite a long name: median ".repeat(3);
     let harness = testing::panel([300.0, 700.0], |ui| draw::draw(ui, "long", &view, 400.0, &[]));
-    assert_nothing_is_wider_than(&harness, 300.0);
+    assert_fits(&harness, 300.0);
 }
 
 #[test]
@@ -264,7 +262,7 @@ fn in_a_narrow_panel_axes_have_titles_with_units_and_a_legend_says_what_a_click_
                 let rect = found.unwrap_or_else(|| panic!("{kind:?}: {text}")).rect();
                 assert!(rect.width() < 360.0, "{kind:?}: {text} needs {rect:?}");
             }
-            assert_nothing_is_wider_than(harness, 365.0);
+            assert_fits(harness, 365.0);
         });
     }
 }
@@ -272,7 +270,7 @@ fn in_a_narrow_panel_axes_have_titles_with_units_and_a_legend_says_what_a_click_
 #[test]
 fn an_individual_in_a_lane_has_the_dot_of_that_lane() {
     let run = explored_run();
-    let best = run.reports()[1].champion.as_ref().expect("a healthy snake");
+    let best = run.reports[1].champion.as_ref().expect("a healthy snake");
     let individual = best.origin.individual;
     let champion = Pick::Individual(IndividualId { generation: 2, individual });
     let view = view_of(ChartKind::Fitness, &run).expect("explored");

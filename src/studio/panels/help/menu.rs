@@ -148,8 +148,7 @@ fn entry(
 mod tests {
     use super::*;
     use crate::studio::commands::{FilmSize, RunCommand};
-    use crate::studio::panels::settings::tests::click;
-    use crate::studio::panels::testing::{Sent, clicked, panel};
+    use crate::studio::panels::testing::{Sent, click, clicked, panel};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

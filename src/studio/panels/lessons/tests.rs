@@ -21,10 +21,8 @@ fn sent(of: &Lessons, label: &str) -> Vec<Command> {
 fn each_lesson_can_be_started_from_the_list() {
     for index in 0..LESSONS.len() {
         let label = format!("Begin lesson {}", index + 1);
-        assert_eq!(
-            sent(&Lessons::default(), &label),
-            [Command::Lesson(LessonCommand::Begin(index))]
-        );
+        let begin = Command::Lesson(LessonCommand::Begin(index));
+        assert_eq!(sent(&Lessons::default(), &label), [begin]);
     }
 }
 

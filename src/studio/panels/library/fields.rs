@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Key as Press, WidgetType};
+use bevy_egui::egui::{self, Key as Press, WidgetType};
 
 use super::LibraryPanel;
 use crate::studio::commands::Command;

@@ -1,7 +1,6 @@
 //! Header of the list: title, search field and sort order.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Key as Press, Sense, WidgetType};
+use bevy_egui::egui::{self, Key as Press, Sense, WidgetType};
 
 use super::LibraryPanel;
 use super::order::{SortKey, SortOrder};

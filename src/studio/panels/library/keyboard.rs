@@ -1,7 +1,6 @@
 //! Keyboard control of the list.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Key as Press, Modifiers};
+use bevy_egui::egui::{self, Key as Press, Modifiers};
 
 use super::LibraryPanel;
 use crate::studio::commands::{Command, PlayerCommand};

@@ -1,8 +1,7 @@
 //! A row of the library: two lines in a narrow panel, columns in a wide one.
 
-use bevy_egui::egui;
 use bevy_egui::egui::epaint::text::LayoutJob;
-use bevy_egui::egui::{Align, FontId, Rect, Response, Sense, WidgetType};
+use bevy_egui::egui::{self, Align, FontId, Rect, Response, Sense, WidgetType};
 
 use super::order::SortKey;
 use crate::studio::panels::thumbnail::thumbnail;

@@ -1,8 +1,7 @@
 //! Tests of the machines panel in each state of the connection.
 
 use super::*;
-use crate::studio::panels::settings::tests::{assert_shows, click};
-use crate::studio::panels::testing::{press, shows, type_into};
+use crate::studio::panels::testing::{assert_shows, click, press, shows, type_into};
 use crate::studio::state::current_run::prepared_run;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

@@ -190,10 +190,8 @@ mod tests {
             let size = vec2(size.x.min(room.width()), size.y);
             let drawn = Rect::from_min_size(room.max - size, size);
             assert!(drawn.top() >= BAR.bottom(), "{card:?}: {drawn}");
-            assert!(
-                card.is_none_or(|card| !card.shrink(0.5).intersects(drawn)),
-                "{card:?}: {drawn}"
-            );
+            let is_free = card.is_none_or(|card| !card.shrink(0.5).intersects(drawn));
+            assert!(is_free, "{card:?}: {drawn}");
             assert!(room.width() >= LEAST_MESSAGES && STAGE.contains_rect(room), "{room}");
         }
     }

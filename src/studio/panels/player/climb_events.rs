@@ -131,9 +131,7 @@ mod tests {
         let landed: Vec<_> = events.iter().filter(|of| of.kind == Landed).collect();
         assert_eq!(landed.len(), 1);
         assert_eq!(Some(landed[0].time_s), lane.landed_s(f64::INFINITY));
-        assert_eq!(
-            ClimbEvent { time_s: 1.5, kind: Lost(0) }.words(),
-            "Fell off the stairs, 1.50 s"
-        );
+        let fall = ClimbEvent { time_s: 1.5, kind: Lost(0) };
+        assert_eq!(fall.words(), "Fell off the stairs, 1.50 s");
     }
 }

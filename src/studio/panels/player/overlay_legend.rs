@@ -1,14 +1,12 @@
 //! Legend of the overlays over the scene: a sample and a line of text for each.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Color32, Pos2, Shape, Stroke};
+use bevy_egui::egui::{self, Color32, Pos2, Shape, Stroke};
 
 use crate::studio::commands::overlay::Overlay;
 use crate::studio::scene::overlays::{Overlays, WEIGHT_M};
 use crate::studio::scene::wireframe::{block_color, stairs_color};
 use crate::studio::ui::text_rows::weak;
-use crate::studio::ui::theme;
-use crate::studio::ui::theme::Palette;
+use crate::studio::ui::theme::{self, Palette};
 
 /// Size of a sample in the legend, in points.
 const SAMPLE: egui::Vec2 = egui::vec2(30.0, 14.0);
@@ -145,12 +143,8 @@ mod tests {
         for shown in Overlay::ALL {
             let harness = legend(&[shown], false);
             for overlay in Overlay::ALL {
-                let name = overlay.name();
-                assert_eq!(
-                    shows(&harness, name),
-                    overlay == shown,
-                    "{overlay:?} while {shown:?} is shown"
-                );
+                let is_listed = shows(&harness, overlay.name());
+                assert_eq!(is_listed, overlay == shown, "{overlay:?} while {shown:?} is shown");
             }
             assert!(!entries(shown, false, theme::of_context(&harness.ctx)).is_empty());
         }

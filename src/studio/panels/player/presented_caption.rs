@@ -148,7 +148,7 @@ fn evolution(run: &CurrentRun) -> Option<String> {
     if run.is_lent {
         return None;
     }
-    let (done, all) = (run.reports().len(), run.plan_now.most_generations_in_words());
+    let (done, all) = (run.reports.len(), run.plan_now.most_generations_in_words());
     match run.status() {
         RunStatus::Running => Some(format!("Evolution: generation {} of {all}", done + 1)),
         RunStatus::Paused => Some(format!("Evolution paused after generation {done}")),
@@ -297,10 +297,8 @@ mod tests {
             assert!(title.right() <= 1000.0 && below.bottom() <= 625.0, "{title} {below}");
             (title.height(), below.top())
         };
-        let (short, long) = (
-            "Generation 12",
-            "a champion with a name of many letters leads: reached the top after 12.3 s",
-        );
+        let short = "Generation 12";
+        let long = "a champion with a name of many letters leads: reached the top after 12.3 s";
         assert!(band(short).0 > band(long).0 * 1.2);
         assert_eq!(band(short).1, band(long).1);
     }

@@ -158,7 +158,7 @@ fn close_button(ui: &mut egui::Ui, title: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::panels::settings::tests::click;
+    use crate::studio::panels::testing::click;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

@@ -1,13 +1,11 @@
 //! Marks of a snake's climb on the timeline, and the legend of the torque strip.
 
-use bevy_egui::egui;
 use bevy_egui::egui::emath::TSTransform;
-use bevy_egui::egui::{Color32, Rect, Shape, Stroke};
+use bevy_egui::egui::{self, Color32, Rect, Shape, Stroke};
 
 use super::climb_events::{ClimbEvent, ClimbEventKind};
 use crate::studio::ui::accessible::named;
-use crate::studio::ui::theme;
-use crate::studio::ui::theme::Palette;
+use crate::studio::ui::theme::{self, Palette};
 use snakes_core::world::JointPlan;
 
 /// Half the size of an event's mark, in points.

@@ -5,7 +5,7 @@ use bevy_egui::egui;
 use super::generation_card::WHY_HINT;
 use super::torque_strip::{THIN, TorqueStrip};
 use crate::studio::commands::{Command, PlayerCommand, StageCommand};
-use crate::studio::panels::own_stairs_button::own_stairs_button;
+use crate::studio::panels::senses::exam::own_stairs_button;
 use crate::studio::stage::end_s;
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::playback::{Playback, SPEED_RANGE};

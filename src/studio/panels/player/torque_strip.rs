@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Color32, Pos2, Rect, Shape, Stroke};
+use bevy_egui::egui::{self, Color32, Pos2, Rect, Shape, Stroke};
 
 use super::climb_events::{ClimbEvent, events};
 use super::strip_marks::{draw_events, event_at, legend};

@@ -114,7 +114,7 @@ impl EvolutionPanel {
         preset_switch(ui, run);
         ui.horizontal(|ui| {
             let hint = "The same seed and settings always give the same run, bit for bit";
-            let seed = self.seed.ui(ui, "Seed", hint, run.next_plan().seed, 0..=u64::MAX);
+            let seed = self.seed.ui(ui, "Seed", hint, run.plan_next.seed, 0..=u64::MAX);
             Command::send_all(seed.map(|seed| Command::Plan(PlanCommand::SetSeed(seed))), ui);
             let hint = "Number of snakes evaluated at the same time. More threads than processor cores are no \
                         faster. The result does not depend on it";
@@ -134,20 +134,20 @@ impl EvolutionPanel {
                         on every computer with an Intel or AMD processor (x86-64)";
             ui.label(weak(ui, hash)).on_hover_text(hint);
         }
-        self.strategy(ui);
+        self.strategy(ui, run);
         self.controller(ui);
         self.sheet.send(ui);
     }
 
     /// Draws the selection of the strategy, with the settings of the selected strategy and of all others.
-    fn strategy(&mut self, ui: &mut egui::Ui) {
+    fn strategy(&mut self, ui: &mut egui::Ui, run: &CurrentRun) {
         self.sheet.section(ui, EvolutionSettings::STRATEGY);
         let common = [EvolutionSettings::RUN, EvolutionSettings::STRATEGY];
         let sections = self.sheet.sections("evolution.").into_iter();
         let (used, others): (Vec<Section>, Vec<Section>) = sections
             .filter(|section| !common.contains(section))
             .partition(|section| self.is_used(*section));
-        let selected = format!("evolution.{}.", self.sheet.settings().evolution.strategy);
+        let selected = format!("evolution.{}.", run.next_settings().evolution.strategy);
         let own = self.sheet.sections(&selected);
         for section in &own {
             self.folded(ui, *section, true);
@@ -259,7 +259,7 @@ const MAX_LISTED_CHANGES: usize = 12;
 
 /// Draws the button that starts the experiment of the report or, if that is the next run, one of the standard climb.
 fn preset_switch(ui: &mut egui::Ui, run: &CurrentRun) {
-    let (label, preset, hint) = if run.next_plan().preset == REPORT {
+    let (label, preset, hint) = if run.plan_next.preset == REPORT {
         ("Run the standard climb", CLIMB, "Start a run that climbs to the landing")
     } else {
         (

@@ -15,7 +15,7 @@ const MEASURED_GENERATIONS: usize = 5;
 /// Draws the progress of the run.
 pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     let (done, population) = run.progress();
-    let finished = run.reports().len();
+    let finished = run.reports.len();
     let random_first = random_first(run.settings(), finished, run.founder().is_some());
     let population = random_first.unwrap_or(population);
     let generations = run.settings().evolution.generations;
@@ -53,12 +53,12 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     ui.add(egui::ProgressBar::new(share).text(inside).fill(theme::of(ui).accent_soft))
         .on_hover_text(hint);
     // This line is always present, so that the layout does not move when the first generation is finished.
-    let text = match evaluations_per_s(run.reports()) {
+    let text = match evaluations_per_s(&run.reports) {
         Some(per_s) if run.status() == RunStatus::Finished => {
             format!("{} snakes per second", rounded(per_s))
         }
         Some(per_s) => {
-            let reports = run.reports().iter();
+            let reports = run.reports.iter();
             let made: u64 = reports.map(|report| u64::from(report.evaluations)).sum();
             let left = run.plan_now.budget().saturating_sub(made + u64::from(done));
             let time = duration_text(left as f64 / per_s);
@@ -68,7 +68,7 @@ pub(crate) fn progress(ui: &mut egui::Ui, run: &CurrentRun) {
     };
     let hint = "Estimated from the latest generations, including those of earlier sessions";
     ui.add(egui::Label::new(weak(ui, text)).wrap()).on_hover_text(hint);
-    if let Some(latest) = run.reports().last() {
+    if let Some(latest) = run.reports.last() {
         let (out, all, reasons) = (latest.disqualified, latest.evaluations, reasons_text(latest));
         let disqualified = weak(ui, format!("Disqualified: {out} of {all}{reasons}"));
         let hint =
@@ -208,9 +208,7 @@ mod tests {
         assert_eq!(reasons_text(&report), "");
         report.reasons.insert(Disqualification::JointBroke, 2);
         report.reasons.insert(Disqualification::LeftArena, 7);
-        assert_eq!(
-            reasons_text(&report),
-            " (7: sideways or backward limit crossed; 2: joint pulled apart)"
-        );
+        let expected = " (7: sideways or backward limit crossed; 2: joint pulled apart)";
+        assert_eq!(reasons_text(&report), expected);
     }
 }

@@ -1,10 +1,9 @@
 //! Tests of the run panel.
 
 use super::*;
-use crate::studio::panels::settings::tests::{
-    assert_nothing_is_wider_than, assert_shows, click, every_section,
+use crate::studio::panels::testing::{
+    self, Sent, assert_fits, assert_shows, click, every_section, press, set, shows, type_into,
 };
-use crate::studio::panels::testing::{self, Sent, press, set, shows, type_into};
 use crate::studio::state::current_run::prepared_run as run;
 use crate::studio::ui::notifications::Notices;
 use egui_kittest::kittest::Queryable;
@@ -46,7 +45,7 @@ fn the_founder_of_the_next_run_can_be_removed() {
     let champion = snakes_core::save::shipped_champion().expect("well formed").champion;
     run.start_next_from(&champion, "Generation 27 of another run, edited").expect("it fits");
     let commands = sent(&run, |harness| {
-        assert_nothing_is_wider_than(harness, theme::PANEL_WIDTH);
+        assert_fits(harness, theme::PANEL_WIDTH);
         assert!(shows(harness, "\"New run\" starts from \"Generation 27 of another run, edited\""));
         harness.get_by_label("Start from scratch").click();
     });
@@ -159,9 +158,7 @@ fn the_first_view_has_the_main_settings_and_the_others_and_the_hash_are_below_a_
     let hash = "Run hash 0000000000c0ffee";
     let mut panel = EvolutionPanel::default();
     let mut harness = testing::panel([400.0, 1600.0], |ui| panel.ui(ui, &run, |_| ()));
-    for shown in ["Friction", "Rise", "Bend limit", "Size of first mutations"] {
-        assert!(harness.query_all_by_label_contains(shown).next().is_some(), "{shown}");
-    }
+    assert_shows(&harness, &["Friction", "Rise", "Bend limit", "Size of first mutations"]);
     let below = ["Seed", "Strategy", hash];
     assert!(below.iter().all(|text| !shows(&harness, text)));
     click(&mut harness, METHOD);
@@ -216,7 +213,7 @@ fn at_every_width_nothing_is_wider_than_the_panel() {
         for kind in &StrategyKind::ALL[1..5] {
             click(&mut harness, kind.title());
         }
-        assert_nothing_is_wider_than(&harness, width);
+        assert_fits(&harness, width);
         // Each section shows its settings when it is unfolded.
         for label in ["Cooling", "Size of first mutations", "Columns and rows", "Neighbours"] {
             assert!(harness.query_all_by_label(label).next().is_some(), "{label}");

@@ -4,7 +4,6 @@ mod stairs_map;
 
 use bevy_egui::egui;
 
-use super::super::own_stairs_button::own_stairs_button;
 use crate::studio::commands::{Command, ExamCommand};
 use crate::studio::stage::lane::Lane;
 use crate::studio::stage::staged_champion::StagedChampion;
@@ -61,6 +60,15 @@ fn invitation(ui: &mut egui::Ui, staged: &StagedChampion, exams: &StairsExams) {
     let hint = "Simulates 30 s on each staircase, in the background: about half a minute";
     let examine = Command::Exam(ExamCommand::Examine);
     CommandButton::new("Examine on 100 staircases", hint, examine).show(ui);
+}
+
+/// Draws a button that shows a champion on its own stairs again, if the champion is on stairs of its exam.
+pub(in crate::studio::panels) fn own_stairs_button(ui: &mut egui::Ui, staged: &StagedChampion) {
+    if staged.is_on_stairs_of_exam() {
+        let hint = "Show the snake where it was found, from the start";
+        let back = Command::Exam(ExamCommand::BackToOwnStairs);
+        CommandButton::new("Back to its own stairs", hint, back).show(ui);
+    }
 }
 
 /// Draws the progress of the exam in progress, of any snake, and a button that cancels it.

@@ -1,7 +1,6 @@
 //! View of the neurons in limbs: the activity of all, and the connections of those in the selected limb.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Align2, Stroke};
+use bevy_egui::egui::{self, Align2, Stroke};
 
 use super::network_graph::network_graph;
 use crate::studio::ui::accessible::named;

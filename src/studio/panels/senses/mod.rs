@@ -4,7 +4,7 @@
 //! the Change panel, so a copy without these senses is added beside the snake.
 
 mod decision_view;
-mod exam;
+pub(super) mod exam;
 mod limb_view;
 mod network_graph;
 mod readouts;

@@ -1,7 +1,6 @@
 //! A network as a graph: inputs on the left, outputs on the right, weights as lines, activities as colours.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Align2, Color32, Pos2, Stroke};
+use bevy_egui::egui::{self, Align2, Color32, Pos2, Stroke};
 
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::decimals::decimals;

@@ -1,7 +1,6 @@
 //! Readings of the senses, in physical units.
 
-use bevy_egui::egui;
-use bevy_egui::egui::Color32;
+use bevy_egui::egui::{self, Color32};
 
 use super::SensesView;
 use super::value_bar::ValueBar;

@@ -1,8 +1,9 @@
 //! Tests of the Senses panel with snakes of several controllers.
 
 use super::*;
-use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, assert_shows, click};
-use crate::studio::panels::testing::{self, Sent, clicked, random_snake, set, shows};
+use crate::studio::panels::testing::{
+    self, Sent, assert_fits, assert_shows, click, clicked, random_snake, set, shows,
+};
 use egui_kittest::kittest::{NodeT, Queryable};
 use snakes_core::genome::controllers::{POSTURES, Policy, SITUATION_BITS};
 use snakes_core::genome::{ControllerGenes, Genome};
@@ -59,7 +60,7 @@ fn the_readouts_of_the_chosen_limb_have_units_and_fit() {
         &["Touch: ", "Load: ", "Yaw: ", "Speed ahead: ", "Joint 4 bend: ", "Click a block"],
     );
     assert!(!shows(&head, "frozen"));
-    assert_nothing_is_wider_than(&head, 320.0);
+    assert_fits(&head, 320.0);
     assert!(shows(&panel_of(4), "Block 5 of 5, the tail"));
 }
 
@@ -117,7 +118,7 @@ fn every_network_is_drawn_with_its_nodes_and_reflexes_are_listed_by_sense() {
         let panel = panel(&lane, 2);
         assert_shows(&panel, labels);
         assert_shows(&panel, &[&format!("Controller: {}", kind.title())]);
-        assert_nothing_is_wider_than(&panel, 320.0);
+        assert_fits(&panel, 320.0);
     }
 }
 
@@ -171,7 +172,7 @@ fn decisions_show_situation_postures_and_rules() {
     assert!(!shows(&rules, "does not match"));
     click(&mut rules, "Also rules that do not match");
     assert!(shows(&rules, "does not match this situation"));
-    assert_nothing_is_wider_than(&rules, 320.0);
+    assert_fits(&rules, 320.0);
 }
 
 #[test]
@@ -187,19 +188,15 @@ fn waves_and_the_rules_that_chose_them_are_shown() {
         assert!(shows(&panel, &said), "{said}");
     }
     for (index, wave) in choice.waves.iter().enumerate() {
-        let said = format!(
-            "Wave {}: {:.2} Hz, {:.0} % of",
-            index + 1,
-            wave.frequency_hz,
-            wave.share * 100.0
-        );
+        let (frequency_hz, percent) = (wave.frequency_hz, wave.share * 100.0);
+        let said = format!("Wave {}: {frequency_hz:.2} Hz, {percent:.0} % of", index + 1);
         assert!(shows(&panel, &said), "{said}");
     }
     let held = choice.rules.iter().filter(|rule| rule.holds).count();
     assert!(shows(&panel, &format!("Rules: {held} of {} hold", choice.rules.len())));
     let strongest = choice.rules.iter().map(|rule| rule.rule.strength).fold(0.0, f32::max);
     assert!(shows(&panel, &format!("strength {strongest:.2}. It ")), "the strongest is first");
-    assert_nothing_is_wider_than(&panel, 320.0);
+    assert_fits(&panel, 320.0);
 }
 
 #[test]
@@ -220,6 +217,6 @@ fn the_neurons_of_all_limbs_are_shown_and_the_wiring_of_the_selected_one() {
             }
         }
         assert!(!shows(&panel, "Block 5, neuron 1, bend target"), "no joint is behind it");
-        assert_nothing_is_wider_than(&panel, 320.0);
+        assert_fits(&panel, 320.0);
     }
 }

@@ -1,7 +1,6 @@
 //! A row with a name, a bar in a range, and a number.
 
-use bevy_egui::egui;
-use bevy_egui::egui::Color32;
+use bevy_egui::egui::{self, Color32};
 
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;

@@ -1,7 +1,6 @@
 //! View of waves that rules choose: the wave of each joint, the waves with their phases, and the rules on which the choice is based.
 
-use bevy_egui::egui;
-use bevy_egui::egui::{Align2, FontId, Rect, Stroke};
+use bevy_egui::egui::{self, Align2, FontId, Rect, Stroke};
 
 use super::rule_row::{RuleRow, rule_list};
 use crate::studio::ui::accessible::named;

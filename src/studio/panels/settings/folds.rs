@@ -73,8 +73,7 @@ impl Sheet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studio::panels::settings::tests::click;
-    use crate::studio::panels::testing::{Sent, panel, shows};
+    use crate::studio::panels::testing::{Sent, click, panel, shows};
     use crate::studio::state::current_run::{CurrentRun, prepared_run};
     use snakes_core::score::Trial;
 

@@ -16,7 +16,6 @@ use crate::studio::state::current_run::CurrentRun;
 use crate::studio::ui::buttons::CommandButton;
 use crate::studio::ui::icons::{Icon, small_icon_button};
 use crate::studio::ui::theme;
-use snakes_core::evolve::Settings;
 use snakes_core::schema::{ListedSetting, Section, Setting, SettingKind, SettingValue};
 
 /// Values that are being dragged or typed in the controls of a panel.
@@ -63,7 +62,7 @@ impl Sheet {
         self.drawn_in = frame;
         self.takes_changes = run.is_under_way().then(|| run.takes_changes());
         if !self.values.are_of(run) {
-            if self.values.preset_name != run.next_plan().preset {
+            if self.values.preset_name != run.plan_next.preset {
                 self.kept.clear();
             }
             self.values = Arc::new(Values::of(run));
@@ -73,11 +72,6 @@ impl Sheet {
     /// Sends the user's commands. Must be called after everything is drawn.
     pub fn send(&mut self, ui: &egui::Ui) {
         Command::send_all(self.sent.drain(..), ui);
-    }
-
-    /// Returns the settings of the next run.
-    pub fn settings(&self) -> &Settings {
-        &self.values.settings
     }
 
     /// Returns whether a visible field contains invalid text.
@@ -253,14 +247,9 @@ mod tests {
         assert!(said.starts_with("Number of generations in a run."), "{said}");
         assert!(said.contains("\nAllowed: 1 to 10000, whole numbers."), "{said}");
         assert!(said.ends_with("\nTakes effect from the next generation."), "{said}");
-        let said = hint(
-            generations,
-            Some(Err("Takes effect with the next run, because the archive depends on it")),
-        );
-        assert!(
-            said.ends_with("\nTakes effect with the next run, because the archive depends on it."),
-            "{said}"
-        );
+        let later = "Takes effect with the next run, because the archive depends on it";
+        let said = hint(generations, Some(Err(later)));
+        assert!(said.ends_with(&format!("\n{later}.")), "{said}");
         assert!(!hint(generations, None).contains("next"), "no run is under way");
     }
 }

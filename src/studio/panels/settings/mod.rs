@@ -17,4 +17,4 @@ pub use form::Sheet;
 pub use values::every_setting;
 
 #[cfg(test)]
-pub(super) mod tests;
+mod tests;

@@ -115,10 +115,8 @@ mod tests {
 
     #[test]
     fn a_setting_of_the_world_follows_its_slider_and_others_wait_until_it_rests_or_is_released() {
-        let (bounce, step) = (
-            ("trial.surface.bounce", "Bounce"),
-            ("evolution.cma_es.step", "Size of first mutations"),
-        );
+        let bounce = ("trial.surface.bounce", "Bounce");
+        let step = ("evolution.cma_es.step", "Size of first mutations");
         for ((field, label), moving, frames, while_held, on_release) in [
             // About three times in a second.
             (bounce, 60, 60, 3..=4, 1),

@@ -3,7 +3,6 @@
 use std::collections::BTreeSet;
 
 use bevy_egui::egui;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
@@ -14,47 +13,6 @@ use snakes_core::evolve::{fields, with_field, with_fields};
 use snakes_core::schema::{
     ListedSetting, NumberRange, Parts, Section, SettingKind, SettingValue, list,
 };
-
-/// Asserts that labels and controls fit into a panel of this width, in points.
-pub(in crate::studio::panels) fn assert_nothing_is_wider_than<S>(
-    harness: &Harness<'_, S>,
-    width: f32,
-) {
-    use egui::accesskit::Role;
-    let roles =
-        [Role::Label, Role::Slider, Role::TextInput, Role::Button, Role::CheckBox, Role::ComboBox];
-    for node in roles.into_iter().flat_map(|role| harness.query_all_by_role(role)) {
-        let rect = node.rect();
-        let is_inside = rect.left() >= 0.0 && rect.right() <= width;
-        assert!(is_inside, "{rect:?} of {width} points: {node:?}");
-    }
-}
-
-/// Asserts that a panel has labels that contain these texts.
-pub(in crate::studio::panels) fn assert_shows<S>(panel: &Harness<'_, S>, texts: &[&str]) {
-    for text in texts {
-        assert!(testing::shows(panel, text), "{text}");
-    }
-}
-
-/// Clicks on the element with this label.
-pub(in crate::studio::panels) fn click<S>(panel: &mut Harness<'_, S>, label: &str) {
-    panel.get_by_label(label).click();
-    panel.run();
-}
-
-/// Clicks at a position, in points.
-pub(in crate::studio::panels) fn click_at<S>(panel: &mut Harness<'_, S>, at: egui::Pos2) {
-    panel.drag_at(at);
-    panel.run();
-    panel.drop_at(at);
-    panel.run();
-}
-
-/// Returns the titles of all sections.
-pub(in crate::studio::panels) fn every_section() -> BTreeSet<String> {
-    every_setting().into_iter().map(|listed| listed.section.title.to_owned()).collect()
-}
 
 /// Creates a run in which all optional settings have values, and lower bounds of ranges are at their minimum.
 fn run_with_all_given() -> CurrentRun {

@@ -119,47 +119,31 @@ mod tests {
         assert_eq!(typed("trial.stairs.rise_m", "4.5"), Ok("4.5".to_owned()), "beyond the slider");
         assert_eq!(typed("trial.stairs.steps", "12"), Ok("12".to_owned()));
         let list = typed("genome.bend_limits_rad", "34.38, 45.84,90");
-        assert_eq!(
-            list,
-            Ok("[0.6, 0.8, 1.5707964]".to_owned()),
-            "unchanged ones keep their digits"
-        );
+        let expected = Ok("[0.6, 0.8, 1.5707964]".to_owned());
+        assert_eq!(list, expected, "unchanged ones keep their digits");
         let limit = typed("trial.agent.bend_limit_rad", "45");
         assert_eq!(limit, Ok(std::f32::consts::FRAC_PI_4.to_string()), "degrees become radians");
     }
 
     #[test]
     fn messages_have_label_value_and_range() {
-        for (field, text, message) in [
-            ("trial.stairs.rise_m", "9", "Rise is \"9\"; allowed: -5 to -0.01 or 0.01 to 5 m"),
-            (
-                "trial.stairs.rise_m",
-                "high",
-                "Rise is \"high\"; allowed: -5 to -0.01 or 0.01 to 5 m",
-            ),
-            ("trial.stairs.rise_m", "NaN", "Rise is \"NaN\"; allowed: -5 to -0.01 or 0.01 to 5 m"),
-            ("trial.stairs.steps", "2.5", "Steps is \"2.5\"; allowed: 0 to 100, whole numbers"),
-            (
-                "genome.bend_limits_rad",
-                "0.6, x",
-                "Bend limits to choose from is \"0.6, x\"; allowed: numbers from 0 to 171.88°, with \
-                 commas between them",
-            ),
-            (
-                "genome.bend_limits_rad",
-                "0.6, 172",
-                "Bend limits to choose from is \"0.6, 172\"; allowed: numbers from 0 to 171.88°, with \
-                 commas between them",
-            ),
-            ("trial.agent.twist_limit_rad", "200", "Twist limit is \"200\"; allowed: 0 to 171.88°"),
-            // The value is in conflict with another setting.
-            (
-                "trial.agent.limbs",
-                "6",
-                "Block width is a list of 5; allowed: one value, or a list of 6",
-            ),
+        let (rise, bends) = ("trial.stairs.rise_m", "genome.bend_limits_rad");
+        let of_rise = "-5 to -0.01 or 0.01 to 5 m";
+        let of_bends = "numbers from 0 to 171.88°, with commas between them";
+        for (field, text, label, allowed) in [
+            (rise, "9", "Rise", of_rise),
+            (rise, "high", "Rise", of_rise),
+            (rise, "NaN", "Rise", of_rise),
+            ("trial.stairs.steps", "2.5", "Steps", "0 to 100, whole numbers"),
+            (bends, "0.6, x", "Bend limits to choose from", of_bends),
+            (bends, "0.6, 172", "Bend limits to choose from", of_bends),
+            ("trial.agent.twist_limit_rad", "200", "Twist limit", "0 to 171.88°"),
         ] {
-            assert_eq!(typed(field, text), Err(message.to_owned()));
+            let message = format!("{label} is \"{text}\"; allowed: {allowed}");
+            assert_eq!(typed(field, text), Err(message));
         }
+        // The value is in conflict with another setting.
+        let message = "Block width is a list of 5; allowed: one value, or a list of 6";
+        assert_eq!(typed("trial.agent.limbs", "6"), Err(message.to_owned()));
     }
 }

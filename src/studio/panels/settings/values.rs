@@ -39,7 +39,7 @@ impl Values {
         Self {
             listed: list(&settings),
             preset: settings_of_preset.iter().flat_map(|preset| values(list(preset))).collect(),
-            preset_name: run.next_plan().preset.clone(),
+            preset_name: run.plan_next.preset.clone(),
             usual: values(every_setting()).chain([engine]).collect(),
             live: live.collect(),
             settings_of_run: run.settings().clone(),
@@ -53,7 +53,7 @@ impl Values {
         self.settings == *run.next_settings()
             && self.settings_of_preset.as_ref() == run.preset_settings()
             && self.settings_of_run == *run.settings()
-            && self.preset_name == run.next_plan().preset
+            && self.preset_name == run.plan_next.preset
             && !self.listed.is_empty()
     }
 

@@ -4,8 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
-use crate::studio::panels::settings::tests::click;
-use crate::studio::panels::testing::{press, shows};
+use crate::studio::panels::testing::{click, press, shows};
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::plan_commands::borrowed;
 use crate::studio::ui::theme;

@@ -1,8 +1,9 @@
 //! Tests of the Change panel: sliders, resets, the search, and the alignment of columns.
 
 use super::*;
-use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, click, every_section};
-use crate::studio::panels::testing::{Sent, panel_at_60_hz, sent_by, set, shows, type_into};
+use crate::studio::panels::testing::{
+    Sent, assert_fits, click, every_section, panel_at_60_hz, sent_by, set, shows, type_into,
+};
 use crate::studio::state::current_run::prepared_run;
 use crate::studio::state::undo::UndoDirection;
 use egui_kittest::kittest::Queryable;
@@ -119,9 +120,9 @@ fn undo_and_redo_are_disabled_without_history() {
     let mut history = UndoHistory::default();
     let off = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Undo").click());
     assert_eq!(off, []);
-    let before = run.next_plan().clone();
+    let before = run.plan_next.clone();
     run.set_field("surface.friction", "0.5").expect("allowed");
-    history.note(&set("trial.surface.friction", "0.5"), before, run.next_plan());
+    history.note(&set("trial.surface.friction", "0.5"), before, &run.plan_next);
     let on = sent_at(&run, 400.0, &history, |harness| harness.get_by_label("Undo").click());
     assert_eq!(on, [Command::Undo]);
     let step = history.take(UndoDirection::Back);
@@ -156,7 +157,7 @@ fn columns_align_and_fit_at_every_panel_width() {
                 let are_aligned = one.left() == other.left() && one.width() == other.width();
                 assert!(are_aligned, "{one:?} and {other:?} at {width} points");
             }
-            assert_nothing_is_wider_than(harness, width);
+            assert_fits(harness, width);
         });
     }
 }

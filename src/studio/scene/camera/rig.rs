@@ -15,7 +15,7 @@ const TURNED_RAD: f32 = 0.05;
 pub(crate) struct CameraRig {
     pub camera_mode: CameraMode,
     /// Target view of the camera.
-    pub(super) view: CameraView,
+    pub view: CameraView,
     /// Current view of the camera, which approaches the target view.
     pub(super) shown: CameraView,
     /// Lane that the camera follows; `None` for all lanes.
@@ -53,11 +53,6 @@ impl CameraRig {
             // The free camera keeps its current view.
             self.view = self.shown;
         }
-    }
-
-    /// Turns the view about the vertical axis, in radians.
-    pub fn turn_by(&mut self, yaw_rad: f32) {
-        self.view.yaw_rad += yaw_rad;
     }
 
     /// Updates the mode after the view was turned by hand: a turned view from the side or from above becomes a

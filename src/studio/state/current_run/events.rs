@@ -140,7 +140,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let mut app = studio(folder.path());
         act(&mut app, |run| run.single_generation());
-        wait_until(&mut app, |run| run.reports().len() == 1 && run.status() == RunStatus::Paused);
+        wait_until(&mut app, |run| run.reports.len() == 1 && run.status() == RunStatus::Paused);
         (folder, app)
     }
 
@@ -169,7 +169,7 @@ mod tests {
     fn settings_of_another_preset_or_run_do_not_change_the_run_under_way() {
         let (_folder, mut app) = paused_studio();
         let before = act(&mut app, |run| {
-            let before = run.next_plan().clone();
+            let before = run.plan_next.clone();
             run.set_preset("report")?;
             run.set_field("evolution.population", "9")?;
             assert!(run.takes_changes().is_err());
@@ -201,8 +201,8 @@ mod tests {
             run.set_field("evolution.population", "6")?;
             run.single_generation()
         });
-        let run = wait_until(&mut app, |run| !run.reports().is_empty());
-        assert_eq!(run.reports().iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
+        let run = wait_until(&mut app, |run| !run.reports.is_empty());
+        assert_eq!(run.reports.iter().map(|report| report.generation).collect::<Vec<_>>(), [1]);
         // A reset does not discard later progress again.
         act(&mut app, |run| {
             run.set_seed(2);
@@ -212,7 +212,7 @@ mod tests {
             run.begin_next()
         });
         let run = finished(&mut app);
-        assert_eq!((run.plan_now.seed, run.reports().len()), (1, 3));
+        assert_eq!((run.plan_now.seed, run.reports.len()), (1, 3));
     }
 
     #[test]
@@ -230,7 +230,7 @@ mod tests {
                 Ok(())
             });
             let run = finished(&mut app);
-            assert_eq!((run.reports().len(), run.number), (generations, 0));
+            assert_eq!((run.reports.len(), run.number), (generations, 0));
             assert_ne!(run.run_hash, hash);
             assert!(!run.next_run_differs(), "the next run has as many");
             assert!(run.milestones.is_sorted_by(|a, b| a.generation < b.generation));
@@ -264,7 +264,7 @@ mod tests {
             run.start()
         });
         let run = finished(&mut app);
-        assert_eq!((run.reports().len(), run.plan_now.changes.made().len()), (3, 1));
+        assert_eq!((run.reports.len(), run.plan_now.changes.made().len()), (3, 1));
     }
 
     #[test]
@@ -289,7 +289,7 @@ mod tests {
             run.start()
         });
         let run = finished(&mut app);
-        let sizes: Vec<u32> = run.reports().iter().map(|report| report.evaluations).collect();
+        let sizes: Vec<u32> = run.reports.iter().map(|report| report.evaluations).collect();
         assert_eq!(sizes, [6, 4, 4, 4]);
         // When the run is resumed after a restart of the program, it has the same hash and changes.
         let (hash, run_folder) = (run.run_hash, run.source.folder.clone());

@@ -13,7 +13,11 @@ impl CurrentRun {
     /// individual is not kept. An unknown evaluation is computed again.
     pub fn individual(&self, place: IndividualId) -> Option<Champion> {
         let genome = (*self.genome_of(place)?).clone();
-        self.found(place, genome, self.trial_of(place), self.evaluation_of(place))
+        let latest = self.latest(place.generation);
+        let of_latest = latest.and_then(|of| of.evaluations.get(place.individual as usize));
+        let of_champion = || Some(self.champion_at(place)?.evaluation);
+        let known = of_latest.copied().or_else(of_champion);
+        self.found(place, genome, self.trial_of(place), known)
     }
 
     /// Returns the member of the Pareto front of distance and energy at this place.
@@ -118,12 +122,6 @@ impl CurrentRun {
             all.map(|ancestor| (ancestor.place, Arc::clone(ancestor))).collect()
         });
         ancestors.get(&place)
-    }
-
-    fn evaluation_of(&self, place: IndividualId) -> Option<Evaluation> {
-        let latest = self.latest(place.generation);
-        let of_latest = latest.and_then(|of| of.evaluations.get(place.individual as usize));
-        of_latest.copied().or_else(|| Some(self.champion_at(place)?.evaluation))
     }
 
     fn champion_at(&self, place: IndividualId) -> Option<&Champion> {

@@ -13,11 +13,6 @@ impl CurrentRun {
         &self.plan_next.settings
     }
 
-    /// Returns the plan of the next run.
-    pub fn next_plan(&self) -> &RunPlan {
-        &self.plan_next
-    }
-
     /// Returns whether the next run's seed, preset, founder or settings differ from those of the current run with its
     /// pending changes.
     pub fn next_run_differs(&self) -> bool {
@@ -96,7 +91,7 @@ impl CurrentRun {
 
     /// Stores the next run's stairs among the user's own.
     pub fn store_stairs(&mut self, name: &str) -> Result<(), String> {
-        let about = format!("Your own stairs, made in the world of {}.", self.next_plan().preset);
+        let about = format!("Your own stairs, made in the world of {}.", self.plan_next.preset);
         let stairs = self.next_settings().trial.stairs.clone();
         let named = NamedStairs { name: name.to_owned(), about, stairs };
         self.context.saves.store_own(&named)?;
@@ -172,14 +167,14 @@ impl CurrentRun {
     /// Sets the preset of the next run, a built-in preset or one of the user's own, and its settings.
     pub fn set_preset(&mut self, name: &str) -> Result<(), String> {
         let preset = self.preset_named(name)?;
-        let seed = self.next_plan().seed;
+        let seed = self.plan_next.seed;
         self.set_next_plan(RunPlan::new(&preset.name, seed, preset.settings))
     }
 
     /// Restores the next run's world from an earlier plan, or all settings if the earlier plan has another preset. The
     /// seed is kept.
     pub fn undo_world(&mut self, before: &RunPlan) -> Result<(), String> {
-        let mut next = self.next_plan().clone();
+        let mut next = self.plan_next.clone();
         if next.preset == before.preset {
             next.settings.trial = before.settings.trial.clone();
         } else {

@@ -35,14 +35,6 @@ impl Tried {
     fn apply(&mut self, command: &FileCommand) -> Result<Option<Show>, String> {
         self.files.apply(command, &mut self.library, &mut self.history, &mut self.notices)
     }
-
-    /// Waits until a message was shown, and returns it.
-    fn report(&mut self) -> String {
-        while self.notices.len() == 0 {
-            self.files.report(&mut self.notices);
-        }
-        self.notices.last().expect("shown").to_owned()
-    }
 }
 
 #[test]
@@ -119,7 +111,10 @@ fn a_folder_or_a_picture_that_does_not_exist_is_reported() {
     ] {
         let mut tried = Tried::new();
         tried.apply(&command).expect("begun");
-        let report = tried.report();
+        while tried.notices.len() == 0 {
+            tried.files.report(&mut tried.notices);
+        }
+        let report = tried.notices.last().expect("shown");
         assert!(report.starts_with(problem), "{report}");
     }
 }

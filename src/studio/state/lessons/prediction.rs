@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn a25_the_answer_about_the_best_run_names_the_number_of_the_table() {
-        let mut report = explored_run().reports()[0].clone();
+        let mut report = explored_run().reports[0].clone();
         let best = report.champion.as_mut().expect("a healthy snake");
         (best.evaluation.centre_y_m, best.evaluation.fitness) = (7.76, 7.19);
         let run = Found { reports: vec![report], ..Found::of("one") };

@@ -224,17 +224,17 @@ fn the_conclusion_about_a_ladder_is_true() {
 #[test]
 fn after_a_lesson_settings_are_as_they_were() {
     let mut run = prepared_run();
-    let next = run.next_plan().clone();
+    let next = run.plan_next.clone();
     let mut lessons = Lessons::default();
     let mut history = UndoHistory::default();
     let shown = lessons.begin(0, &mut run, &mut history);
     assert_eq!(shown.expect("allowed").expect("a scene").champions.len(), 3);
     run.set_field("surface.friction", "0.2").expect("allowed");
     lessons.begin(1, &mut run, &mut history).expect("allowed");
-    assert_eq!(*run.next_plan(), next, "the next lesson starts with the user's settings");
+    assert_eq!(run.plan_next, next, "the next lesson starts with the user's settings");
     run.set_field("surface.friction", "0.3").expect("allowed");
     lessons.leave(&mut run, &mut history).expect("allowed");
-    assert_eq!(*run.next_plan(), next);
+    assert_eq!(run.plan_next, next);
     assert!(lessons.view().is_none());
 }
 

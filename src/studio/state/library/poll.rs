@@ -69,7 +69,7 @@ fn follow(
         library.current = current.map(ToOwned::to_owned);
         library.revision += 1;
     }
-    let now = (run.number, run.reports().len());
+    let now = (run.number, run.reports.len());
     let now_s = time.elapsed_secs();
     if *seen != now && library.is_open() && now_s - *looked_s > EARLIEST_LOOK_S {
         (*seen, *looked_s) = (now, now_s);

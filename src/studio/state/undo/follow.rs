@@ -103,9 +103,9 @@ mod tests {
     #[test]
     fn undo_reverts_the_changed_lane_step_by_step() {
         let (mut run, start, first) = tried();
-        let one = run.next_plan().clone();
+        let one = run.plan_next.clone();
         let second = changed(&mut run, &first, "stairs.rise_m", "0.7");
-        let back = step(&second, run.next_plan(), &one);
+        let back = step(&second, &run.plan_next, &one);
         assert_eq!(back.champions[1].trial(), first.champions[1].trial());
         assert_eq!(back.champions[1].label(), "friction 0.3");
         let end = step(&back, &one, &start);
@@ -121,10 +121,10 @@ mod tests {
     fn a_lane_that_stays_is_left_alone_by_undo() {
         let (mut run, start, tried) = tried();
         let fixed = another_beside(&run, tried).expect("there is a copy");
-        let one = run.next_plan().clone();
+        let one = run.plan_next.clone();
         let three = changed(&mut run, &fixed, "surface.friction", "2");
         assert_eq!(labels(&three), ["climber", "friction 0.3", "friction 2"]);
-        let two = run.next_plan().clone();
+        let two = run.plan_next.clone();
         let back = step(&three, &two, &one);
         assert_eq!(labels(&back), ["climber", "friction 0.3"]);
         // After a further undo, the next run has the world of the original, but the copy stays.
@@ -138,11 +138,11 @@ mod tests {
     #[test]
     fn a_preset_is_undone_and_redone_and_the_engine_of_the_champion_stays() {
         let mut run = prepared_run();
-        let start = run.next_plan().clone();
+        let start = run.plan_next.clone();
         let tried = changed_by(&mut run, &solo(), &WorldChange::Preset("ice"));
-        let back = step(&tried, run.next_plan(), &start);
+        let back = step(&tried, &run.plan_next, &start);
         assert_eq!((back.champions.len(), back.champions[0].trial()), (1, climber(0).trial()));
-        let forth = step(&back, &start, run.next_plan());
+        let forth = step(&back, &start, &run.plan_next);
         assert_eq!(forth.champions[1].trial(), tried.champions[1].trial());
         let own = climber(0).trial().physics.engine;
         assert_eq!(forth.champions[1].trial().physics.engine, own);
@@ -152,9 +152,9 @@ mod tests {
     #[test]
     fn undoing_a_discard_shows_the_change_again() {
         let (mut run, _, tried) = tried();
-        let with_change = run.next_plan().clone();
+        let with_change = run.plan_next.clone();
         let alone = dropped(&mut run, &tried).expect("allowed");
-        let again = step(&alone.expect("the original"), run.next_plan(), &with_change);
+        let again = step(&alone.expect("the original"), &run.plan_next, &with_change);
         assert_eq!(again.champions[1].label(), "friction 0.3");
     }
 
@@ -162,7 +162,7 @@ mod tests {
     fn undoing_a_kept_change_leaves_one_lane() {
         let (run, start, tried) = tried();
         let kept = Show::solo(tried.champions[1].clone());
-        let back = step(&kept, run.next_plan(), &start);
+        let back = step(&kept, &run.plan_next, &start);
         assert_eq!((back.champions.len(), back.mode), (1, StageMode::Solo));
         let friction = start.settings.trial.surface.friction;
         assert_eq!(back.champions[0].trial().surface.friction, friction);
@@ -171,9 +171,9 @@ mod tests {
     #[test]
     fn a_separate_ground_is_removed_as_a_whole() {
         let mut run = prepared_run();
-        let start = run.next_plan().clone();
+        let start = run.plan_next.clone();
         let tried = changed(&mut run, &solo(), "ground.friction", "0.1");
-        let back = step(&tried, run.next_plan(), &start);
+        let back = step(&tried, &run.plan_next, &start);
         assert_eq!(back.champions[0].trial().ground, climber(0).trial().ground);
         assert_eq!(back.mode, StageMode::Solo);
     }
@@ -181,13 +181,13 @@ mod tests {
     #[test]
     fn races_and_changes_of_the_search_do_not_affect_the_stage() {
         let mut run = prepared_run();
-        let before = run.next_plan().clone();
+        let before = run.plan_next.clone();
         run.set_field("evolution.population", "9").expect("allowed");
-        let shown = followed(stage(&solo()), &before, run.next_plan());
+        let shown = followed(stage(&solo()), &before, &run.plan_next);
         assert!(shown.expect("fits").is_none());
         run.set_field("surface.friction", "0.3").expect("allowed");
         let race = Show::race(vec![climber(0), climber(1)]);
-        let shown = followed(stage(&race), &before, run.next_plan());
+        let shown = followed(stage(&race), &before, &run.plan_next);
         assert!(shown.expect("fits").is_none());
     }
 }

@@ -41,7 +41,7 @@ pub(in crate::studio::state) fn changed(
 /// Tries a friction of 0.3 with the built-in champion. Returns the run, the plan before the change, and the stage.
 pub(in crate::studio::state) fn tried() -> (CurrentRun, RunPlan, Show) {
     let mut run = prepared_run();
-    let start = run.next_plan().clone();
+    let start = run.plan_next.clone();
     let show = changed(&mut run, &solo(), "surface.friction", "0.3");
     (run, start, show)
 }
@@ -79,13 +79,13 @@ fn changes_add_up_beside_the_original_and_can_be_kept_or_dropped() {
     let shown = dropped(&mut run, &second);
     let shown = shown.expect("allowed").expect("the original");
     assert_eq!(shown.champions[0].trial(), original.trial());
-    assert_eq!(*run.next_plan(), plan, "as it was before the first change");
+    assert_eq!(run.plan_next, plan, "as it was before the first change");
     // Other settings that were changed meanwhile are kept.
     changed(&mut run, &solo(), "surface.friction", "0.3");
     run.set_seed(77);
     run.set_field("evolution.population", "9").expect("allowed");
     dropped(&mut run, &second).expect("allowed");
-    assert_eq!((run.next_plan().seed, run.next_settings().evolution.population), (77, 9));
+    assert_eq!((run.plan_next.seed, run.next_settings().evolution.population), (77, 9));
     assert_eq!(run.next_settings().trial, plan.settings.trial);
 }
 
@@ -175,7 +175,7 @@ fn two_settings_stand_side_by_side_and_each_can_be_kept_or_discarded() {
     // Another value replaces the lane that is not kept.
     let both = changed(&mut run, &both, "surface.friction", "2");
     assert_eq!(labels(&both), ["climber", "friction 0.3", "rise 0.7, friction 2"]);
-    let after_both = run.next_plan().clone();
+    let after_both = run.plan_next.clone();
 
     let kept = kept_lane(&mut run, &both, 1).expect("allowed");
     assert_eq!(labels(&kept.expect("a lane")), ["friction 0.3"]);

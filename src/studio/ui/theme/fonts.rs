@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use bevy_egui::egui;
-use bevy_egui::egui::Color32;
 use bevy_egui::egui::epaint::text::{LayoutJob, TextOptions, layout};
+use bevy_egui::egui::{self, Color32};
 
 use super::{
     HEADING_SIZE, PRESENTED_DETAIL_SIZE, PRESENTED_SIZES, SMALL_SIZE, TAG_SIZE, TITLE_SIZE,

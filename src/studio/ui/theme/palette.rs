@@ -3,15 +3,13 @@
 //! All text has the contrast that WCAG requires, 4.5 to 1, on each background on which it is drawn. The tests check this.
 
 use bevy::prelude::{Color, Vec3};
-use bevy_egui::egui;
 use bevy_egui::egui::ecolor::{
     gamma_u8_from_linear_f32, linear_f32_from_gamma_u8, linear_u8_from_linear_f32,
 };
-use bevy_egui::egui::{Color32, CornerRadius, Frame, Margin, Stroke};
+use bevy_egui::egui::{self, Color32, CornerRadius, Frame, Margin, Stroke};
 
 use snakes_core::evolve::StrategyKind;
-use snakes_lab::plot;
-use snakes_lab::plot::{BAND_OPACITY, Role, role_color};
+use snakes_lab::plot::{self, BAND_OPACITY, Role, role_color};
 
 /// Declares the palette: in each row a field, its type, and its value in the light and in the dark theme.
 macro_rules! palette {

@@ -56,13 +56,13 @@ impl StageParams<'_, '_> {
     ) -> Result<(), String> {
         let PlanStep { before, after, .. } = step;
         let (from, to) = if way == UndoDirection::Back { (after, before) } else { (before, after) };
-        let now = run.next_plan().clone();
+        let now = run.plan_next.clone();
         let next = stepped(&now, from, to);
         run.replace_next(next, !step.is_of_another_run())?;
         let (time_s, moment) = self.moment(history);
         let shown = self.shown();
         let stage = ChangedStage { show: &shown, moment: moment.as_ref() };
-        let show = followed(stage, &now, run.next_plan())?;
+        let show = followed(stage, &now, &run.plan_next)?;
         self.present_change(show, time_s);
         Ok(())
     }

@@ -78,11 +78,8 @@ fn the_torques_are_those_of_the_selected_snake_and_its_parent() {
     torques.update(&run, Some(&staged(child))).expect("a snake");
     let figure = computed(&mut torques).figure;
     assert_eq!(figure.title, format!("Torques: {}", snake_of_generation(child)));
-    assert!(
-        figure.note.contains(&format!("its parent, {}", snake_of_generation(parent))),
-        "{}",
-        figure.note
-    );
+    let of_parent = format!("its parent, {}", snake_of_generation(parent));
+    assert!(figure.note.contains(&of_parent), "{}", figure.note);
     torques.update(&run, Some(&staged(parent))).expect("a snake");
     let figure = computed(&mut torques).figure;
     assert_eq!(figure.title, format!("Torques: {}", snake_of_generation(parent)));

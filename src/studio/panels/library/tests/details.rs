@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::studio::panels::library::details::details;
-use crate::studio::panels::settings::tests::click;
+use crate::studio::panels::testing::click;
 
 #[test]
 fn the_details_of_the_run_that_is_open_in_this_window_say_so() {

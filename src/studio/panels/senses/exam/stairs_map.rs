@@ -1,7 +1,6 @@
 //! Map of an exam's grid: rises upwards, treads to the right. Each cell shows the number of landings, also by its colour.
 
-use bevy_egui::egui;
-use bevy_egui::egui::Color32;
+use bevy_egui::egui::{self, Color32};
 
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::state::stairs_exams::end_in_words;

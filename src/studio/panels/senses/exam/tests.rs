@@ -1,8 +1,9 @@
 //! Tests of the section before, during and after an exam.
 
 use super::*;
-use crate::studio::panels::settings::tests::assert_nothing_is_wider_than;
-use crate::studio::panels::testing::{Sent, clicked, climber, panel, random_snake, shows};
+use crate::studio::panels::testing::{
+    Sent, assert_fits, clicked, climber, panel, random_snake, shows,
+};
 use crate::studio::state::stairs_exams::tests::NOT_LANDED;
 use egui_kittest::kittest::Queryable;
 use snakes_core::genome::ControllerKind;
@@ -47,7 +48,7 @@ fn before_the_exam_a_button_begins_it_for_every_controller() {
     for (staged, is_sensing) in [(gait(), false), (sensing(), true)] {
         let mut section = section(staged, &exams, theme::PANEL_WIDTH);
         assert_eq!(shows(&section, "with its senses and without them"), is_sensing);
-        assert_nothing_is_wider_than(&section, theme::PANEL_WIDTH);
+        assert_fits(&section, theme::PANEL_WIDTH);
         let sent = clicked(&mut section, "Examine on 100 staircases");
         assert_eq!(sent, [Command::Exam(ExamCommand::Examine)]);
     }
@@ -71,7 +72,7 @@ fn a_cell_tells_its_landings_and_a_click_watches_it() {
     let (mut exams, staged) = (StairsExams::default(), gait());
     exams.keep(staged.champion().clone(), vec![made_up(ExamSuite::Stairs, &staged)]);
     let mut section = section(staged, &exams, theme::PANEL_WIDTH);
-    assert_nothing_is_wider_than(&section, theme::PANEL_WIDTH);
+    assert_fits(&section, theme::PANEL_WIDTH);
     for (stairs, landed) in [
         ("Rise 0.3 m, tread 1.5 m", "5 of 5 climbed, median 10 of 10 steps"),
         ("Rise 0.6 m, tread 2 m", "2 of 5 climbed, median 3 of 10 steps"),
@@ -99,7 +100,7 @@ fn a_snake_with_senses_is_compared_with_itself_without_them() {
     exams.keep(staged.champion().clone(), grids.into());
     for width in [theme::PANEL_WIDTH, 700.0] {
         let mut section = section(staged.clone(), &exams, width);
-        assert_nothing_is_wider_than(&section, width);
+        assert_fits(&section, width);
         let with = section.get_by_label_contains("With senses. Rise 0.4 m, tread 2 m").rect();
         let without = section.get_by_label_contains("Without senses. Rise 0.4 m, tread 2 m").rect();
         assert!(with.right() < without.left() && with.top() == without.top(), "side by side");

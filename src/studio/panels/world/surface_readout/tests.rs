@@ -2,9 +2,9 @@
 
 use super::lane_column::in_joules;
 use super::*;
-use crate::studio::panels::champions::tests::assert_no_texts_overlap;
-use crate::studio::panels::settings::tests::{assert_nothing_is_wider_than, assert_shows};
-use crate::studio::panels::testing::{self, Sent, climber, climber_lane, shows};
+use crate::studio::panels::testing::{
+    self, Sent, assert_fits, assert_no_overlap, assert_shows, climber, climber_lane, shows,
+};
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::ui::decimals::in_percent;
 use egui_kittest::kittest::Queryable;
@@ -66,7 +66,7 @@ fn a_what_if_has_both_snakes_side_by_side_and_fits_at_every_width() {
         });
         assert!(left.right() < right.left() && left.center().y == right.center().y);
         assert!(shows(&panel, "climber") && shows(&panel, "a long name"));
-        assert_nothing_is_wider_than(&panel, width);
+        assert_fits(&panel, width);
     }
 }
 
@@ -80,10 +80,8 @@ fn pointing_at_a_number_explains_it_limb_by_limb() {
     panel.run_steps(60);
     assert!(shows(&panel, &format!("Fastest point: {:.2} m/s", reading.top_slip_m_s)));
     let limbs = (1..=5).filter(|limb| shows(&panel, &format!("Block {limb}"))).count();
-    assert_eq!(
-        limbs,
-        (0..5).filter(|limb| lane.readings.meter.limb(false, *limb, |_| true).is_some()).count()
-    );
+    let touches = |limb: &usize| lane.readings.meter.limb(false, *limb, |_| true).is_some();
+    assert_eq!(limbs, (0..5).filter(touches).count());
     assert_eq!(limbs, reading.limbs);
 }
 
@@ -120,7 +118,7 @@ fn the_values_of_five_snakes_are_whole_in_the_narrowest_panel() {
     // The width includes the margins of the test's window.
     let width = 320.0 + 16.0;
     let panel = panel(vec![&stone, &ice, &stone, &ice, &stone], ReadSurface::Stairs, width);
-    assert_nothing_is_wider_than(&panel, width);
+    assert_fits(&panel, width);
     for lane in [&stone, &ice] {
         let reading = lane.readings.meter.surface(false, |_| true).expect("contact");
         let lost = in_joules(lane.readings.energy_lost.expect("undisturbed").elsewhere_j());
@@ -164,5 +162,5 @@ fn a23_texts_do_not_overlap_in_the_frame_after_a_change_is_discarded() {
     });
     shown.set(1);
     panel.step();
-    assert_no_texts_overlap(&panel, egui::Rect::EVERYTHING, 9, 1.0);
+    assert_no_overlap(&panel, egui::Rect::EVERYTHING, 9, 1.0);
 }
