@@ -2,6 +2,7 @@
 
 mod choice;
 mod codes;
+mod edit;
 mod profile;
 mod random;
 mod table;
@@ -24,34 +25,10 @@ use snakes_core::world::Stairs;
 pub(super) use choice::stairs_choice;
 use choice::{name_of, replacement};
 use codes::codes;
+use edit::{StairsEdit, StairsResponse};
 use profile::{Grab, Profile};
 use random::RandomStairs;
 use table::table;
-
-/// A change of the stairs that the drawing or the table returns.
-#[derive(Debug, Clone, PartialEq)]
-struct StairsEdit {
-    /// Stairs after the change.
-    stairs: Stairs,
-    /// Whether the change is complete, rather than part of a drag in progress.
-    is_complete: bool,
-}
-
-impl StairsEdit {
-    /// Creates a change that is complete.
-    fn complete(stairs: Stairs) -> Self {
-        Self { stairs, is_complete: true }
-    }
-}
-
-/// Response of the drawing and the table to the pointer.
-#[derive(Debug, Default)]
-struct StairsResponse {
-    /// Step whose edge or row is under the pointer; the lowest is 0.
-    pointed: Option<u32>,
-    /// Change of the stairs, if any.
-    edit: Option<StairsEdit>,
-}
 
 /// The Stairs panel, with the change in progress.
 #[derive(Debug, Default)]

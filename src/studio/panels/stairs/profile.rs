@@ -2,7 +2,7 @@
 
 use bevy_egui::egui;
 
-use super::{StairsEdit, StairsResponse};
+use super::edit::{StairsEdit, StairsResponse};
 use crate::studio::ui::accessible::named;
 use crate::studio::ui::theme;
 use snakes_core::score::AgentSettings;
