@@ -134,10 +134,13 @@ impl StudioParams<'_, '_> {
                     notices.update("panel size", news.to_owned());
                 }
             }
-            Command::Library(LibraryCommand::SaveSnake) => {
-                let selected = stage.selected().ok_or("There is no snake on the stage.")?;
-                library.save(&selected)?;
-                self.bodies.note_saved(&selected);
+            Command::Library(LibraryCommand::SaveSnake) | Command::Body(BodyCommand::Save) => {
+                let staged = match command {
+                    Command::Body(_) => self.bodies.to_save()?,
+                    _ => stage.selected().ok_or("There is no snake on the stage.")?,
+                };
+                library.save(&staged)?;
+                self.bodies.note_saved(&staged);
             }
             Command::Library(command) => {
                 stage.present_others(library.apply(command, history, notices)?, notices);
@@ -182,11 +185,6 @@ impl StudioParams<'_, '_> {
                 }
                 let show = self.exams.apply(command, stage.selected().as_ref())?;
                 stage.present_others(show, notices);
-            }
-            Command::Body(BodyCommand::Save) => {
-                let edited = self.bodies.to_save()?;
-                library.save(&edited)?;
-                self.bodies.note_saved(&edited);
             }
             Command::Body(command) => {
                 if *command == BodyCommand::Edit {

@@ -228,8 +228,10 @@ fn advance(
     if selection.as_ref().is_some_and(|of| of.held.is_some_and(|held| held.is_pulling)) {
         playback.is_playing = true;
     }
-    playback.are_several = lanes.iter().filter(|(_, lane)| !lane.is_ghost).nth(1).is_some();
-    playback.pass(time.delta_secs(), f64::from(MAX_STEPS_PER_FRAME) / steps_per_s, end_s);
+    let are_several = lanes.iter().filter(|(_, lane)| !lane.is_ghost).nth(1).is_some();
+    let rest_s = if are_several { playback::REST_OF_SEVERAL_S } else { playback::REST_S };
+    let most_s = f64::from(MAX_STEPS_PER_FRAME) / steps_per_s;
+    playback.pass(time.delta_secs(), most_s, end_s, rest_s);
     for (entity, mut lane) in &mut lanes {
         let pull = selection.as_ref().and_then(|selection| selection.pull_on(entity));
         let failed = lane.show(playback.time_s(), pull, most_steps).err();

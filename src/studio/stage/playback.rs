@@ -20,8 +20,6 @@ pub(crate) struct Playback {
     pub loops: bool,
     /// Real time since the clock reached the end, in seconds.
     rested_s: f32,
-    /// Whether several snakes are played side by side.
-    pub are_several: bool,
     /// Whether the time was set by a seek. The next frame then draws exactly this time.
     is_sought: bool,
     /// Time from which changes of the world were last tried, in simulated seconds; `None` if the user has since gone to
@@ -36,9 +34,9 @@ pub(crate) const SPEED_RANGE: RangeInclusive<f32> = 0.1..=16.0;
 /// Speeds through which the keys step, in simulated seconds per real second.
 const SPEEDS: [f32; 8] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
 /// Pause at the end before a loop restarts, in seconds.
-const REST_S: f32 = 1.5;
+pub const REST_S: f32 = 1.5;
 /// Pause at the end of several snakes before a loop restarts, in seconds: time to read their places.
-const REST_OF_SEVERAL_S: f32 = 6.0;
+pub const REST_OF_SEVERAL_S: f32 = 6.0;
 /// Maximum real time by which a single frame advances the clock, in seconds. After a longer gap (a dragged window, a
 /// sleeping laptop) playback continues where it was instead of jumping ahead.
 const MAX_CATCH_UP_S: f32 = 0.5;
@@ -51,7 +49,6 @@ impl Default for Playback {
             is_playing: true,
             loops: true,
             rested_s: 0.0,
-            are_several: false,
             is_sought: false,
             tried_from_s: None,
             commands: 0,
@@ -171,8 +168,8 @@ impl Playback {
     }
 
     /// Advances by `elapsed_s` of real time, but by at most `most_s` of simulated time. `end_s` is the end of the
-    /// longest lane.
-    pub fn pass(&mut self, elapsed_s: f32, most_s: f64, end_s: f64) {
+    /// longest lane, `rest_s` the real time at the end before a loop restarts.
+    pub fn pass(&mut self, elapsed_s: f32, most_s: f64, end_s: f64, rest_s: f32) {
         // The known end can move closer while the lookahead is running.
         self.time_s = self.time_s.min(end_s);
         if std::mem::take(&mut self.is_sought) || !self.is_playing {
@@ -186,7 +183,6 @@ impl Playback {
         }
         self.time_s = end_s;
         self.rested_s += elapsed_s;
-        let rest_s = if self.are_several { REST_OF_SEVERAL_S } else { REST_S };
         if self.rested_s > rest_s && self.loops {
             return self.restart();
         }
@@ -202,20 +198,20 @@ mod tests {
 
     #[test]
     fn after_several_snakes_there_is_time_to_read_their_places_before_the_loop() {
-        let restarts_after = |are_several| {
-            let mut playback = Playback { are_several, time_s: 15.0, ..Playback::default() };
+        let restarts_after = |rest_s| {
+            let mut playback = Playback { time_s: 15.0, ..Playback::default() };
             (1..100).find(|_| {
-                playback.pass(0.5, 1.0, 15.0);
+                playback.pass(0.5, 1.0, 15.0, rest_s);
                 playback.time_s == 0.0
             })
         };
-        assert_eq!([false, true].map(restarts_after), [Some(4), Some(13)]);
+        assert_eq!([REST_S, REST_OF_SEVERAL_S].map(restarts_after), [Some(4), Some(13)]);
     }
 
     #[test]
     fn step_moves_by_exactly_one_physics_step() {
         let mut playback = Playback::default();
-        playback.pass(0.0251, 1.0, 15.0);
+        playback.pass(0.0251, 1.0, 15.0, REST_S);
         let steps = |playback: &Playback| libm::round(playback.time_s() / STEP_S * 1000.0) / 1000.0;
         let mut seen = Vec::new();
         for forward in [true, true, false, false, false, false] {
@@ -231,16 +227,16 @@ mod tests {
         let mut playback = Playback::default();
         playback.set_speed(16.0);
         while playback.time_s() < 2.0 {
-            playback.pass(0.1, 1.0, 2.0);
+            playback.pass(0.1, 1.0, 2.0, REST_S);
         }
         let begins_again = |_| {
-            playback.pass(0.1, 1.0, 2.0);
+            playback.pass(0.1, 1.0, 2.0, REST_S);
             playback.time_s() < 2.0
         };
         let rests = (0..40).position(begins_again).expect("it begins again");
         assert!((14..17).contains(&rests), "{rests} frames of a tenth of a second");
         playback.loops = false;
-        (0..40).for_each(|_| playback.pass(0.1, 1.0, 2.0));
+        (0..40).for_each(|_| playback.pass(0.1, 1.0, 2.0, REST_S));
         assert_eq!((playback.time_s(), playback.is_playing), (2.0, false));
         playback.toggle(2.0);
         assert_eq!((playback.time_s(), playback.is_playing), (0.0, true), "play begins anew");
@@ -264,10 +260,10 @@ mod tests {
     #[test]
     fn a_long_frame_advances_by_the_maximum_only() {
         let mut playback = Playback::default();
-        playback.pass(60.0, 10.0, 100.0);
+        playback.pass(60.0, 10.0, 100.0, REST_S);
         assert_eq!(playback.time_s(), 0.5);
         playback.set_speed(16.0);
-        playback.pass(0.5, 2.0, 100.0);
+        playback.pass(0.5, 2.0, 100.0, REST_S);
         assert_eq!(playback.time_s(), 2.5, "no more than can be simulated in a frame");
     }
 }

@@ -9,7 +9,7 @@ use directories::ProjectDirs;
 
 use super::change::load_changed_plan;
 use super::files::{modified, numbered, refuse_link};
-use super::library::{notes_beside, taken};
+use super::library::{is_free, taken};
 use super::notes::{EntryNotes, notes_in_run};
 use super::plan::is_run;
 use super::record::{count_records, read_records};
@@ -72,10 +72,7 @@ impl SavesFolder {
     ) -> Result<PathBuf, SaveError> {
         self.prepare()?;
         let path = |number: u32| self.0.join(format!("{name}-{number}.{extension}"));
-        let is_free = |path: &Path| path.symlink_metadata().is_err();
-        // Notes of a removed champion may remain. They must not become notes of a new one.
-        let has_no_notes = |path: &PathBuf| is_free(path) && is_free(&notes_beside(path));
-        for path in (1..=u32::MAX).map(path).filter(has_no_notes) {
+        for path in (1..=u32::MAX).map(path).filter(|path| is_free(path, false)) {
             match write_new(&path, contents) {
                 Err(SaveError::Unwritable { source, .. })
                     if source.kind() == ErrorKind::AlreadyExists => {}

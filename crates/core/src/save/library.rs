@@ -24,7 +24,7 @@ pub use details::{
 };
 pub use list::{LibraryEntry, list};
 pub(super) use moving::taken;
-pub(super) use name::notes_beside;
+pub(super) use name::is_free;
 pub use name::{check_entry_name, plain_name};
 pub use notes::{read_notes, set_notes_text};
 pub use place::SavePlace;

@@ -10,7 +10,7 @@ use crate::studio::scene::overlays::Overlays;
 use crate::studio::scene::quality::StageQuality;
 use crate::studio::scene::way_back::WayBack;
 use crate::studio::stage::lane::Lane;
-use crate::studio::stage::playback::Playback;
+use crate::studio::stage::playback::{Playback, REST_S};
 use crate::studio::stage::selection::Selection;
 use crate::studio::stage::staged_champion::StagedChampion;
 use crate::studio::stage::{Show, StageMode};
@@ -110,7 +110,8 @@ fn changes_are_tried_from_one_moment_until_the_user_goes_to_another() {
     let goes_to =
         |time_s| move |of: &mut Playback| of.apply(&PlayerCommand::Seek(time_s), 1.0 / 60.0, 15.0);
     assert_eq!(tried("0.3", &|playback| playback.hold_at(5.0)), (Some(300), 5.0));
-    let plays_on = |playback: &mut Playback| (0..8).for_each(|_| playback.pass(0.5, 1.0, 15.0));
+    let plays_on =
+        |playback: &mut Playback| (0..8).for_each(|_| playback.pass(0.5, 1.0, 15.0, REST_S));
     assert_eq!(tried("0.4", &plays_on), (Some(300), 5.0));
     assert_eq!(tried("0.5", &goes_to(3.0)), (Some(180), 3.0));
     assert_eq!(tried("0.6", &plays_on), (Some(180), 3.0));

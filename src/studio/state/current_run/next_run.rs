@@ -115,7 +115,8 @@ impl CurrentRun {
     }
 
     fn in_words(&self, preset: &str, settings: &Settings) -> String {
-        let is_changed = self.settings_of(preset).is_some_and(|own| {
+        let own = self.settings_of(preset).filter(|own| *own != settings);
+        let is_changed = own.is_some_and(|own| {
             let mut own = own.clone();
             // A longer run is no other experiment.
             own.evolution.generations = settings.evolution.generations;

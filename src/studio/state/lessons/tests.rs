@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use super::lesson::Shows;
 use super::*;
+use crate::studio::stage::playback::REST_S;
 use crate::studio::state::current_run::prepared_run;
 use snakes_core::evolve::Champion;
 use snakes_core::save::load_preset;
@@ -38,7 +39,7 @@ fn played(staged: &StagedChampion, speeds: &[f32]) -> Plays {
         playback.set_speed(*speed);
         playback.restart();
         while !lane.replay.is_over() {
-            playback.pass(1.0 / 60.0, 1.0, lane.end_s());
+            playback.pass(1.0 / 60.0, 1.0, lane.end_s(), REST_S);
             lane.show(playback.time_s(), None, 1000).expect("it simulates");
             plays.follow_stage(&playback, &[&lane]);
         }

@@ -1,4 +1,4 @@
-//! What tests of strategies have in common.
+//! Plans, generations and the test of resuming that the tests of several strategies share.
 
 use std::ops::Range;
 

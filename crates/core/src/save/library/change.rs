@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::details::{path_in_errors, text_of_champion};
 use super::moving::{move_entry, taken};
-use super::name::{ENDING, check_entry_name, free_path, notes_beside, shortened};
+use super::name::{ENDING, check_entry_name, free_path, is_free, notes_beside, shortened};
 use super::notes::{add_copy, name_run, set_notes};
 use super::place::SavePlace;
 use crate::check::Invalid;
@@ -175,8 +175,7 @@ fn free_path_like(path: &Path, is_folder: bool, folder: &Path) -> PathBuf {
 fn restore(kept: &Path, wanted: &Path) -> Result<FileStep, SaveError> {
     let folder = wanted.parent().unwrap_or(Path::new("."));
     let is_folder = kept.is_dir();
-    let is_free = |path: &Path| path.symlink_metadata().is_err();
-    let to = if is_free(wanted) && (is_folder || is_free(&notes_beside(wanted))) {
+    let to = if is_free(wanted, is_folder) {
         wanted.to_owned()
     } else {
         free_path_like(wanted, is_folder, folder)

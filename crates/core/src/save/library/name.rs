@@ -82,11 +82,15 @@ pub fn free_path(folder: &Path, name: &str, ending: Option<&str>) -> PathBuf {
         let name = shortened(name, &number);
         folder.join(ending.map_or(name.clone(), |ending| format!("{name}.{ending}")))
     };
-    let is_free = |path: &Path| path.symlink_metadata().is_err();
-    // Notes of a removed file may remain. They must not become notes of a new file.
-    let has_no_notes = |path: &PathBuf| ending.is_none() || is_free(&notes_beside(path));
-    let mut free = (1..=u32::MAX).map(path).filter(|path| is_free(path) && has_no_notes(path));
+    let mut free = (1..=u32::MAX).map(path).filter(|path| is_free(path, ending.is_none()));
     free.next().unwrap_or_else(|| path(0))
+}
+
+/// Returns whether a path is free for a new folder, or for a new file. Notes of a removed file may remain; they must not become notes of
+/// a new file.
+pub fn is_free(path: &Path, is_folder: bool) -> bool {
+    let is_missing = |path: &Path| path.symlink_metadata().is_err();
+    is_missing(path) && (is_folder || is_missing(&notes_beside(path)))
 }
 
 #[cfg(test)]
